@@ -116,8 +116,8 @@ fn discover(scene: Configured<'_>, numbers: &[f64]) -> Vec<Key> {
     at.discovered()
 }
 
-/// A builder with numbers for the layout, as they are recorded.
-fn inputs<'b>(scene: &Scene, builder: &'b RefCell<Builder>) -> Vec<Sym<'b>> {
+/// Returns the numbers of the layout, as they are recorded.
+pub(super) fn inputs<'b>(scene: &Scene, builder: &'b RefCell<Builder>) -> Vec<Sym<'b>> {
     let layout = scene.layout.inputs();
     let mut numbers: Vec<Sym<'_>> = layout.iter().map(|&i| Sym::input(i, builder)).collect();
     if scene.mode == super::equations::STATIC {

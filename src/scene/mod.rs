@@ -35,6 +35,7 @@ mod motions;
 pub mod mover;
 pub mod programs;
 mod reads;
+pub mod recorder;
 mod row_scale;
 pub mod slopes;
 pub mod solve;

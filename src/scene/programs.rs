@@ -6,6 +6,7 @@ use super::configuration::Configured;
 use super::equations::{Equations, STATIC, Unsupported};
 use super::layout::{Layout, LongRow};
 use super::loops;
+use super::recorder::Recorder;
 use super::solve::{SymmetricFactor, gram};
 use crate::expr::program::{Builder, Folding, Input, Levels, Program, Sym, Value};
 use crate::model::ElementId;
@@ -87,7 +88,7 @@ where
         n_more,
         n_sides: 0,
     };
-    let layout: Vec<Input> = (0..row.len()).map(|k| Input::Slot(k as u32)).collect();
+    let layout = inputs_of(row);
     let mut numbers: Vec<Sym<'_>> = layout
         .iter()
         .map(|&input| Sym::input(input, &builder))
@@ -109,6 +110,11 @@ where
     let lists = end(recorder, values);
     let finish = |values: &Vec<Value>| recorder.finish_with_inputs(values, &layout);
     (lists.iter().map(finish).collect(), equations.complaints())
+}
+
+/// Returns the inputs of a program that reads a row.
+fn inputs_of(row: LongRow) -> Vec<Input> {
+    (0..row.len()).map(|k| Input::Slot(k as u32)).collect()
 }
 
 /// Returns how many operations each force, equation and row adds to the rates, the most first. An
@@ -160,7 +166,7 @@ pub struct Switching {
 
 /// Returns the numbers that loads and differential equations are made of: where these change
 /// branch, so do the rates.
-fn sources<S: Scalar>(at: &Equations<'_, S>, scene: &Scene) -> Vec<S> {
+pub(super) fn sources<S: Scalar>(at: &Equations<'_, S>, scene: &Scene) -> Vec<S> {
     let mut sources = at.state_rates();
     for force in &scene.forces {
         let action = force.action(at);
@@ -195,43 +201,93 @@ pub(crate) struct Timed {
 ///
 /// # Errors
 /// Functions ask for what the equations cannot supply.
-pub(crate) fn timed(scene: Configured<'_>) -> Result<Timed, Vec<Unsupported>> {
-    let linear = scene.loops_linear && !scene.loops.is_empty();
-    let n_more = if linear { scene.loops.len() } else { 0 };
-    let mut levels = Vec::new();
+pub(crate) fn timed(recorder: &Recorder<'_, '_>) -> Result<Timed, Vec<Unsupported>> {
+    let scene = recorder.scene();
     let time = Input::Slot(Layout::TIME as u32);
-    let (mut programs, complaints) = recorded(
-        scene,
-        n_more,
-        linear,
-        false,
-        |at, _| sources(at, &scene),
-        |builder, values| {
-            let breaks = builder.timed_breaks(&values, time);
-            let (values, all) = breaks.into_iter().map(|b| (b.value, b.levels)).unzip();
-            levels = all;
-            vec![values]
-        },
-    );
-    if !complaints.is_empty() {
-        return Err(complaints);
+    let inputs = scene.layout.inputs();
+    let breaks = |builder: &mut Builder, values: &[Value]| -> (Vec<Value>, Vec<Levels>) {
+        let breaks = builder.timed_breaks(values, time).into_iter();
+        breaks.map(|b| (b.value, b.levels)).unzip()
+    };
+    if scene.loops_linear && !scene.loops.is_empty() {
+        let mut levels = Vec::new();
+        let (mut programs, complaints) = recorded(
+            scene,
+            scene.loops.len(),
+            true,
+            false,
+            |at, _| sources(at, &scene),
+            |builder, all| {
+                let (values, of_values) = breaks(builder, &all);
+                levels = of_values;
+                vec![values]
+            },
+        );
+        if !complaints.is_empty() {
+            return Err(complaints);
+        }
+        let values = programs.remove(0);
+        return Ok(Timed { values, levels });
     }
-    let values = programs.remove(0);
-    Ok(Timed { values, levels })
+    recorder.end(recorder.sources(), |builder, all| {
+        let (values, levels) = breaks(builder, &all);
+        let values = builder.finish_with_inputs(&values, &inputs);
+        Timed { values, levels }
+    })
 }
 
 /// Where loads, differential equations and motions change branch. `None`: nowhere.
 ///
 /// # Errors
 /// Functions ask for what the equations cannot supply.
-pub fn switching(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Unsupported>> {
+pub fn switching(recorder: &Recorder<'_, '_>) -> Result<Option<Switching>, Vec<Unsupported>> {
+    let scene = recorder.scene();
+    if !scene.loops.is_empty() {
+        return switching_of_loops(scene);
+    }
+    let n_switches = recorder.end(recorder.sources(), |builder, values| {
+        builder.switching(&values).len()
+    })?;
+    if n_switches == 0 {
+        return Ok(None);
+    }
+    let row = LongRow {
+        numbers: scene.layout,
+        n_more: 0,
+        n_sides: n_switches,
+    };
+    let n_rates = scene.layout.n_rates();
+    let mut values = rate(recorder.at());
+    values.extend(recorder.sources());
+    let (held, switches) = recorder
+        .end(&values, |builder, values| {
+            let layout = inputs_of(row);
+            // inputs stand in the order in which they are asked for
+            for &input in &layout {
+                builder.input(input);
+            }
+            let (wanted, sources) = (&values[..n_rates], &values[n_rates..]);
+            let side = |k: usize| Input::Slot(row.side_at(k) as u32);
+            let (held, switches) = builder.held(wanted, sources, side);
+            [held, switches].map(|values| builder.finish_with_inputs(&values, &layout))
+        })?
+        .into();
+    Ok(Some(Switching {
+        switches,
+        unknowns: None,
+        held: Some(held),
+        held_loops: None,
+    }))
+}
+
+/// As [`switching`] where there are algebraic loops. Their unknowns are known here, so that their
+/// elimination does not count as a switch.
+fn switching_of_loops(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Unsupported>> {
     let n_loops = scene.loops.len();
-    // unknowns are known here, so that their elimination does not count as a switch
-    let known = n_loops > 0;
     let (mut switches, complaints) = recorded(
         scene,
         n_loops,
-        known,
+        true,
         false,
         |at, _| sources(at, &scene),
         |builder, values| vec![builder.switching(&values)],
@@ -243,10 +299,9 @@ pub fn switching(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Unsuppo
     if n_switches == 0 {
         return Ok(None);
     }
-    let unknowns = if known && scene.loops_linear {
-        Some(record(scene, |at| at.unknowns(n_loops))?)
-    } else {
-        None
+    let unknowns = match scene.loops_linear {
+        true => Some(record(scene, |at| at.unknowns(n_loops))?),
+        false => None,
     };
     let row = LongRow {
         numbers: scene.layout,
@@ -257,7 +312,7 @@ pub fn switching(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Unsuppo
     let (mut all, _) = recorded(
         scene,
         n_loops + n_switches,
-        known,
+        true,
         false,
         |at, _| {
             let mut out = rate(at);
@@ -274,7 +329,7 @@ pub fn switching(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Unsuppo
         },
     );
     let held = all.pop();
-    let held_loops = all.pop().filter(|_| known);
+    let held_loops = all.pop();
     Ok(all.pop().map(|switches| Switching {
         switches,
         unknowns,

@@ -10,6 +10,7 @@ use cognate::scene::build;
 use cognate::scene::configuration::{Configuration, Way};
 use cognate::scene::equations::Equations;
 use cognate::scene::programs;
+use cognate::scene::recorder::{self, Recorder};
 use running::{Analysis, Options, Session, begin, go, values, whole};
 use std::fmt::Write;
 
@@ -75,6 +76,11 @@ fn angles_that_pass_zero_are_no_switches() {
 
 /// A scissor lift of `n` cells in an inclined plane, on a base that is part of ground, which closes a loop with every cell.
 fn scissor_lift(n: usize) -> Model {
+    scissor_lift_with(n, "")
+}
+
+/// The same with further statements.
+fn scissor_lift_with(n: usize, more: &str) -> Model {
     let mut text = "LIFT\nPART/1, GROUND\nACCGRAV/JGRAV=-9.81, IGRAV=2\nPART/2, REULER=0.3,0.7,-0.4\n\
                     MARKER/1, PART=1, REULER=0.3,0.7,-0.4\nMARKER/2, PART=2\nJOINT/1, FIXED, I=2, J=1\n"
         .to_string();
@@ -113,7 +119,7 @@ fn scissor_lift(n: usize) -> Model {
             hinge(&mut text, b, a - 2, [1.0, y]);
         }
     }
-    whole(&format!("{text}END\n"))
+    whole(&format!("{text}{more}END\n"))
 }
 
 /// The lift in motion, with freedoms and rows eliminated in one way: the least changes that put velocities on the rows, then
@@ -158,6 +164,72 @@ fn accelerations_and_multipliers_are_the_same_however_they_are_eliminated() {
                 size > 0.1 && off < 1e-9 * size,
                 "{n} cells, {k}: {off:.1e} of {size:.1e}"
             );
+        }
+    }
+}
+
+/// Whatever else is recorded at the same instant, before or after, in one order of elimination or the other.
+#[test]
+fn programs_recorded_together_compute_the_bits_that_each_computes_alone() {
+    let model = scissor_lift_with(
+        3,
+        "SFORCE/1, TRANSLATION, ACTIONONLY, I=10011, J=1, FUNCTION=IF(DX(10011):1,2,VX(10011)*3)+DIF(1)\n\
+         DIFF/1, IC=1, FUNCTION=-DIF(1)+IMPACT(DY(10012),VY(10012),0.3,1E3,1.5,1,0.1)\n",
+    );
+    let scene = Scene::compile(&model, &build::Options::default()).expect("a scene");
+    let with = |way: Way| {
+        let mut configuration = Configuration::new(&scene);
+        let mut q = scene.initial_q.clone();
+        assemble::positions(&scene, &mut configuration, 0.0, &mut q, &[1.0]).unwrap();
+        configuration.elimination.way = way;
+        configuration
+    };
+    let ways = [with(Way::ArticulatedBodies), with(Way::MassMatrix)];
+    let builder = recorder::builder();
+    let first = Recorder::new(scene.within(&ways[0]), &builder);
+    let second = first.eliminating(&ways[1]);
+    let numbers: Vec<f64> = (0..scene.layout.len())
+        .map(|k| (1.7 * k as f64).sin())
+        .collect();
+    let run = |program: &cognate::expr::program::Program| {
+        let mut out = vec![0.0; program.n_outputs()];
+        program.run(&numbers, &mut Default::default(), &mut out);
+        out.into_iter().map(f64::to_bits).collect::<Vec<_>>()
+    };
+    assert!(programs::switching(&first).unwrap().is_some());
+    for (recorder, way) in [(&first, &ways[0]), (&second, &ways[1])] {
+        let here = scene.within(way);
+        let at = recorder.at();
+        let rate = programs::rate(at);
+        let changes = programs::projection(&scene, at, at.velocities());
+        let together = [&changes, &rate].map(|values| recorder.program(values).unwrap());
+        let alone = [
+            programs::record(here, |at| programs::projection(&here, at, at.velocities())).unwrap(),
+            programs::record(here, |at| programs::rate(at)).unwrap(),
+        ];
+        for (together, alone) in together.iter().zip(&alone) {
+            assert_eq!(together.n_operations(), alone.n_operations());
+            assert_eq!(run(together), run(alone));
+        }
+        // the held rate, on the sides that the numbers say
+        let switching = programs::switching(recorder).unwrap().expect("switches");
+        let held = switching.held.expect("a held rate");
+        let mut row = numbers.clone();
+        row.resize(held.inputs().len(), 0.0);
+        let mut sides = vec![0.0; switching.switches.n_outputs()];
+        switching
+            .switches
+            .run(&row, &mut Default::default(), &mut sides);
+        row[numbers.len()..]
+            .iter_mut()
+            .zip(&sides)
+            .for_each(|(side, x)| *side = x.signum());
+        let mut out = vec![0.0; held.n_outputs()];
+        held.run(&row, &mut Default::default(), &mut out);
+        let mut plain = vec![0.0; together[1].n_outputs()];
+        together[1].run(&numbers, &mut Default::default(), &mut plain);
+        for (a, b) in out.iter().zip(&plain) {
+            assert!((a - b).abs() <= 1e-12 * b.abs().max(1.0), "{a} {b}");
         }
     }
 }

@@ -134,12 +134,11 @@ pub struct Session {
     kept: Option<Box<Kept>>,
     /// the model of the system that the present simulation began with, as that keeps it
     kept_model: Option<Arc<Model>>,
-    /// programs of the present scene: of the columns; of the values of rows
+    /// program of the columns of the present scene
     columns_program: Option<Program>,
     /// the program of the columns that belongs to the kept start which the session has gone back
     /// to, and the numbers that it lacks
     columns_at_start: Option<(Program, Vec<Unsupported>)>,
-    row_values: Option<Program>,
     hooks: Vec<closures::Hook>,
     /// linear systems that commands asked for: name of their file where one was given, and whether
     /// matrices are wanted
@@ -209,7 +208,6 @@ impl Session {
             kept_model: None,
             columns_program: None,
             columns_at_start: None,
-            row_values: None,
             hooks: Vec::new(),
             linear: Vec::new(),
             saved: std::collections::BTreeMap::new(),

@@ -57,7 +57,7 @@ impl Session {
         let n = scene.layout.n_v as f64;
         // looking costs n³ per state
         if n.powi(3) * trajectory.weak.len() as f64 <= 1e9 {
-            for pass in ranks::passes(scene.within(&configuration), &trajectory.weak) {
+            for pass in ranks::passes(scene.within(&configuration), system, &trajectory.weak) {
                 told.push(results::RankChange {
                     time: pass.t,
                     change: RowChange::Passes,

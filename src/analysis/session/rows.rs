@@ -205,15 +205,7 @@ impl Session {
         if n_rows == 0 || self.pace.columns_alone {
             return;
         }
-        if self.row_values.is_none() {
-            let program = crate::scene::programs::record(system.configured(), |at| {
-                (0..n_rows).map(|r| at.row(r).value).collect()
-            });
-            self.row_values = program.ok();
-        }
-        let Some(program) = &self.row_values else {
-            return;
-        };
+        let program = system.row_values();
         let mut work = Work::default();
         let mut out = vec![0.0; program.n_outputs()];
         for row in rows {
@@ -224,7 +216,7 @@ impl Session {
 
     /// Notes the constraint drift of a simulation.
     pub(super) fn note_drift(&mut self, system: &System, balance: &Balance) {
-        if system.scene.rows.is_empty() || self.row_values.is_none() {
+        if system.scene.rows.is_empty() || self.pace.columns_alone {
             return;
         }
         let record = &mut self.run.record;

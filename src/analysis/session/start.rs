@@ -72,7 +72,7 @@ impl Session {
         mode: u32,
         inputs: &[u32],
     ) -> Result<(Start, Vec<f64>, Assembly), Vec<Diagnostic>> {
-        (self.columns_program, self.row_values) = (None, None);
+        self.columns_program = None;
         self.model.checked()?;
         self.check_closures()?;
         self.within_limit(SetUp::Reading)?;

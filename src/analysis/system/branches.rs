@@ -5,14 +5,13 @@
 //! at which the motion stays meanwhile.
 
 use super::algebraic_loops::AlgebraicLoops;
-use super::complaints;
 use super::sliding::Slides;
-use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::model::Level;
-use crate::scene::configuration::Configured;
+use crate::scene::equations::Unsupported;
 use crate::scene::layout::{Layout, LongRow};
 use crate::scene::programs::{self, Switching};
+use crate::scene::recorder::Recorder;
 use crate::scene::{Scene, Source};
 
 /// Angle by which an angle that decides a branch may turn within a step: a quarter of a turn, in
@@ -52,8 +51,9 @@ impl Branches {
     ///
     /// # Errors
     /// Functions that the equations cannot supply.
-    pub(super) fn new(scene: Configured<'_>) -> Result<Self, Vec<Diagnostic>> {
-        let switching = programs::switching(scene).map_err(complaints)?;
+    pub(super) fn new(recorder: &Recorder<'_, '_>) -> Result<Self, Vec<Unsupported>> {
+        let scene = recorder.scene();
+        let switching = programs::switching(recorder)?;
         let n = switching.as_ref().map_or(0, |s| s.switches.n_outputs());
         let row = LongRow {
             numbers: scene.layout,

@@ -40,6 +40,7 @@ mod tunnelling;
 pub mod turns;
 
 use crate::diagnostic::{Diagnostic, Error};
+use crate::expr::program::Program;
 use crate::numeric::Ode;
 use crate::scene::Scene;
 use crate::scene::broken::{Broken, broken};
@@ -49,6 +50,7 @@ use crate::scene::mover::Mover;
 use branches::Branches;
 use closures::Hook;
 use recorded::Recorded;
+pub(in crate::analysis) use rows::RowGradients;
 use singular_step::SingularSteps;
 use std::sync::Arc;
 use turns::Look;
@@ -147,6 +149,16 @@ impl System {
             self.prepare_energy();
         }
         Ok(())
+    }
+
+    /// Returns the program of the values of all rows   (n_rows)
+    pub(in crate::analysis) fn row_values(&self) -> &Program {
+        &self.recorded.rows.values
+    }
+
+    /// Returns the gradients of the rows that take part.
+    pub(in crate::analysis) fn row_gradients(&self) -> &RowGradients {
+        &self.recorded.rows.gradients
     }
 
     /// Returns the scene in its present configuration.

@@ -26,8 +26,9 @@ use crate::scene::articulated::ArticulatedFactor;
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured, Way};
 use crate::scene::elimination;
-use crate::scene::equations::{Equations, KINEMATIC, STATIC};
-use crate::scene::programs::{self, record};
+use crate::scene::equations::{Equations, KINEMATIC, STATIC, Unsupported};
+use crate::scene::programs;
+use crate::scene::recorder::{self, Recorder};
 use crate::scene::solve;
 use crate::scene::{Scene, Source};
 
@@ -85,16 +86,17 @@ impl Recorded {
         hooks: &[Hook],
     ) -> Result<Self, Vec<Diagnostic>> {
         choose_elimination(scene, configuration, q);
-        let rate = shortest_rate(scene, configuration)?;
+        let together = record_together(scene, configuration).map_err(complaints)?;
+        configuration.elimination.way = together.way;
         let here = scene.within(configuration);
-        let branches = Branches::new(here)?;
-        let switches = branches.switching.as_ref().map(|s| &s.switches);
-        let readers: Vec<&Program> = std::iter::once(&rate).chain(switches).collect();
+        let switches = (together.branches.switching.as_ref()).map(|s| &s.switches);
+        let readers: Vec<&Program> = std::iter::once(&together.rate).chain(switches).collect();
         Ok(Self {
             turns: Turns::new(here, &readers)?,
-            rate: Recording::new(rate),
-            rows: Rows::new(here)?,
-            branches,
+            rate: Recording::new(together.rate),
+            rows: together.rows,
+            branches: together.branches,
+            time_events: together.time_events,
             loops: AlgebraicLoops::new(here).map_err(complaints)?,
             thickness: ThicknessBounds::new(here, scene.layout.n_y()).map_err(complaints)?,
             derivatives: Derivatives::default(),
@@ -104,7 +106,6 @@ impl Recorded {
             samples: Samples::new(here).map_err(complaints)?,
             pulses: Pulses::new(here)?,
             peaks: Peaks::new(here)?,
-            time_events: TimeEvents::new(here).map_err(complaints)?,
         })
     }
 
@@ -141,33 +142,55 @@ impl Recorded {
     }
 }
 
-/// Chooses the elimination that takes fewer operations and records the rate with it; deep forests
-/// are not tried the quadratic way, and rows are left where they are to be eliminated.
-fn shortest_rate(
-    scene: &Scene,
-    configuration: &mut Configuration,
-) -> Result<Program, Vec<Diagnostic>> {
-    if configuration.elimination.way == Way::RowsWhereLoopsClose {
-        return rate_program(scene.within(configuration));
-    }
-    configuration.elimination.way = Way::ArticulatedBodies;
-    let articulated = rate_program(scene.within(configuration))?;
-    if scene.depth() > MAX_DEPTH_OF_MATRIX {
-        return Ok(articulated);
-    }
-    configuration.elimination.way = Way::MassMatrix;
-    let matrix = rate_program(scene.within(configuration))?;
-    if matrix.n_operations() <= articulated.n_operations() {
-        return Ok(matrix);
-    }
-    configuration.elimination.way = Way::ArticulatedBodies;
-    Ok(articulated)
+/// Programs that have the rows of a scene in common, and are recorded together.
+struct Together {
+    /// the way in which accelerations are found
+    way: Way,
+    rate: Program,
+    rows: Rows,
+    branches: Branches,
+    time_events: TimeEvents,
 }
 
-// a function item would be of one lifetime
-#[allow(clippy::redundant_closure)]
-fn rate_program(scene: Configured<'_>) -> Result<Program, Vec<Diagnostic>> {
-    record(scene, |at| programs::rate(at)).map_err(complaints)
+/// Chooses the way of elimination that takes fewer operations, and records with it what reads rows
+/// or the rates; deep forests are not tried the quadratic way, and rows are left where they are to
+/// be eliminated.
+fn record_together(
+    scene: &Scene,
+    configuration: &Configuration,
+) -> Result<Together, Vec<Unsupported>> {
+    let with = |way: Way| {
+        let mut configuration = configuration.clone();
+        configuration.elimination.way = way;
+        configuration
+    };
+    let rows_where_loops_close = configuration.elimination.way == Way::RowsWhereLoopsClose;
+    let first = with(match rows_where_loops_close {
+        true => Way::RowsWhereLoopsClose,
+        false => Way::ArticulatedBodies,
+    });
+    let second = with(Way::MassMatrix);
+    let builders = [recorder::builder(), recorder::builder()];
+    let mut recorder = Recorder::new(scene.within(&first), &builders[0]);
+    let mut rate = recorder.program(&programs::rate(recorder.at()))?;
+    if !rows_where_loops_close && scene.depth() <= MAX_DEPTH_OF_MATRIX {
+        let other = match scene.loops.is_empty() {
+            true => recorder.eliminating(&second),
+            // unknowns of loops are eliminated anew
+            false => Recorder::new(scene.within(&second), &builders[1]),
+        };
+        let matrix = other.program(&programs::rate(other.at()))?;
+        if matrix.n_operations() <= rate.n_operations() {
+            (rate, recorder) = (matrix, other);
+        }
+    }
+    Ok(Together {
+        way: recorder.scene().configuration.elimination.way,
+        rate,
+        branches: Branches::new(&recorder)?,
+        rows: Rows::new(&recorder)?,
+        time_events: TimeEvents::new(&recorder)?,
+    })
 }
 
 /// Returns the inertia to lend to freedoms that have none although rows determine their motion

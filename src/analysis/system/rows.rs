@@ -4,16 +4,16 @@
 //! Rows that close loops hold at acceleration level within a step. What is left of them in position
 //! and velocity is taken away after each accepted step, by the least changes.
 
-use super::complaints;
 use super::recording::Recording;
-use crate::diagnostic::Diagnostic;
-use crate::expr::program::Program;
+use crate::expr::program::{Program, Sym};
 use crate::numeric::control::worst;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::scene::cams::Cam;
 use crate::scene::configuration::Configured;
-use crate::scene::programs::{self, record};
+use crate::scene::equations::Unsupported;
+use crate::scene::programs;
+use crate::scene::recorder::Recorder;
 
 /// Violation of a row, relative to what counts as one, that is rounding.
 pub(super) const ROUNDING: f64 = 1e-14;
@@ -29,6 +29,10 @@ pub(super) struct Rows {
     /// rows that are left out and may not follow from the others wherever the mechanism goes, and
     /// their values   (n_left_out)
     left_out: Option<(Vec<usize>, Recording)>,
+    /// values of all rows   (n_rows)
+    pub(super) values: Program,
+    /// gradients of the rows that take part
+    pub(super) gradients: RowGradients,
     /// what multiplies each velocity where velocities are compared   (n_v)
     pub(super) scales: Vec<f64>,
     /// places in x of contacts on curves   (n_contacts)
@@ -47,13 +51,16 @@ impl Rows {
     ///
     /// # Errors
     /// Functions that the equations cannot supply.
-    pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Diagnostic>> {
+    pub fn new(recorder: &Recorder<'_, '_>) -> Result<Self, Vec<Unsupported>> {
+        let scene = recorder.scene();
         let weights = programs::weights(&scene);
-        let left_out = left_out_program(scene)?;
+        let left_out = left_out_program(recorder)?;
         Ok(Self {
-            projection: projection_program(scene)?.map(Recording::new),
-            violation: violation_program(scene)?.map(Recording::new),
+            projection: projection_program(recorder)?.map(Recording::new),
+            violation: violation_program(recorder)?.map(Recording::new),
             left_out: left_out.map(|(rows, program)| (rows, Recording::new(program))),
+            values: values_program(recorder)?,
+            gradients: RowGradients::new(recorder)?,
             scales: weights.iter().map(|w| w.sqrt().recip()).collect(),
             contacts: contact_states(&scene),
             clean: false,
@@ -124,6 +131,33 @@ impl Rows {
     }
 }
 
+/// The gradients of the rows that take part, along the velocities of free coordinates.
+#[derive(Clone, Debug)]
+pub(in crate::analysis) struct RowGradients {
+    /// row and place in v of each entry
+    pub entries: Vec<(usize, usize)>,
+    /// the entries   (n_entries)
+    pub program: Program,
+}
+
+impl RowGradients {
+    /// Records the gradients.
+    ///
+    /// # Errors
+    /// Functions that the equations cannot supply.
+    pub fn new(recorder: &Recorder<'_, '_>) -> Result<Self, Vec<Unsupported>> {
+        let (mut entries, mut values) = (Vec::new(), Vec::new());
+        for r in recorder.scene().configuration.active_rows() {
+            for &(v, x) in &recorder.at().row(r).gradient {
+                entries.push((r, v));
+                values.push(x);
+            }
+        }
+        let program = recorder.program(&values)?;
+        Ok(Self { entries, program })
+    }
+}
+
 /// Returns the places in x of the contacts on curves, in their order.
 fn contact_states(scene: &Scene) -> Vec<usize> {
     let states = |cam: &Cam| cam.state..cam.state + cam.contact.n_parameters();
@@ -131,52 +165,49 @@ fn contact_states(scene: &Scene) -> Vec<usize> {
 }
 
 /// Records the least changes onto the rows; `None` when none takes part.
-fn projection_program(scene: Configured<'_>) -> Result<Option<Program>, Vec<Diagnostic>> {
+fn projection_program(recorder: &Recorder<'_, '_>) -> Result<Option<Program>, Vec<Unsupported>> {
+    let (scene, at) = (recorder.scene(), recorder.at());
     if scene.configuration.active_rows().next().is_none() {
         return Ok(None);
     }
-    let program = record(scene, |at| {
-        programs::projection(&scene, at, at.velocities())
-    });
-    program.map(Some).map_err(complaints)
+    let changes = programs::projection(&scene, at, at.velocities());
+    recorder.program(&changes).map(Some)
 }
 
 /// Records the violation of each row that takes part, and its rate; `None` when none does.
-fn violation_program(scene: Configured<'_>) -> Result<Option<Program>, Vec<Diagnostic>> {
-    let active: Vec<usize> = scene.configuration.active_rows().collect();
-    if active.is_empty() {
-        return Ok(None);
+fn violation_program(recorder: &Recorder<'_, '_>) -> Result<Option<Program>, Vec<Unsupported>> {
+    let (scene, at) = (recorder.scene(), recorder.at());
+    let v = at.velocities();
+    let both = |r: usize| {
+        let row = at.row(r);
+        let along = row.gradient.iter();
+        let rate = along.fold(row.drift, |s, &(k, g)| s + g * v[k]);
+        let one = 1.0 / scene.row_scale(r);
+        [row.value.scale(one), rate.scale(one)]
+    };
+    let all: Vec<Sym<'_>> = (scene.configuration.active_rows()).flat_map(both).collect();
+    match all.is_empty() {
+        true => Ok(None),
+        false => recorder.program(&all).map(Some),
     }
-    let program = record(scene, |at| {
-        let v = at.velocities();
-        let both = |&r: &usize| {
-            let row = at.row(r);
-            let along = row.gradient.iter();
-            let rate = along.fold(row.drift, |s, &(k, g)| s + g * v[k]);
-            let one = 1.0 / scene.row_scale(r);
-            [row.value.scale(one), rate.scale(one)]
-        };
-        active.iter().flat_map(both).collect()
-    });
-    program.map(Some).map_err(complaints)
 }
 
 /// Records the rows that are left out without being zero whatever happens; `None`: there are none.
 fn left_out_program(
-    scene: Configured<'_>,
-) -> Result<Option<(Vec<usize>, Program)>, Vec<Diagnostic>> {
-    let idle = |r: &usize| !scene.configuration.active[*r];
-    let idle: Vec<usize> = (0..scene.rows.len()).filter(idle).collect();
-    if idle.is_empty() {
-        return Ok(None);
-    }
-    let mut rows = Vec::new();
-    let program = record(scene, |at| {
-        let values = idle.iter().map(|&r| (r, at.row(r).value));
-        let changing: Vec<_> = values.filter(|(_, x)| x.known().is_none()).collect();
-        rows = changing.iter().map(|c| c.0).collect();
-        changing.into_iter().map(|c| c.1).collect()
-    })
-    .map_err(complaints)?;
+    recorder: &Recorder<'_, '_>,
+) -> Result<Option<(Vec<usize>, Program)>, Vec<Unsupported>> {
+    let (scene, at) = (recorder.scene(), recorder.at());
+    let idle = (0..scene.rows.len()).filter(|&r| !scene.configuration.active[r]);
+    let values = idle.map(|r| (r, at.row(r).value));
+    let (rows, values): (Vec<usize>, Vec<Sym<'_>>) =
+        values.filter(|(_, x)| x.known().is_none()).unzip();
+    let program = recorder.program(&values)?;
     Ok((!rows.is_empty()).then_some((rows, program)))
+}
+
+/// Records the values of all rows.
+fn values_program(recorder: &Recorder<'_, '_>) -> Result<Program, Vec<Unsupported>> {
+    let rows = 0..recorder.scene().rows.len();
+    let values: Vec<Sym<'_>> = rows.map(|r| recorder.at().row(r).value).collect();
+    recorder.program(&values)
 }

@@ -17,10 +17,10 @@
 
 use crate::expr::program::{Levels, Program, Work};
 use crate::scalar::Interval;
-use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
 use crate::scene::layout::{Layout, LongRow};
 use crate::scene::programs;
+use crate::scene::recorder::Recorder;
 
 /// Evaluations for one search, at most.
 const MAX_EVALUATIONS: usize = 400;
@@ -66,8 +66,9 @@ impl TimeEvents {
     ///
     /// # Errors
     /// Functions that the equations cannot supply.
-    pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Unsupported>> {
-        let programs::Timed { values, levels } = programs::timed(scene)?;
+    pub fn new(recorder: &Recorder<'_, '_>) -> Result<Self, Vec<Unsupported>> {
+        let scene = recorder.scene();
+        let programs::Timed { values, levels } = programs::timed(recorder)?;
         if levels.is_empty() {
             return Ok(Self::default());
         }

@@ -191,7 +191,7 @@ impl Continuation {
 
     /// Takes note that other rows take part from the present state on.
     pub fn see_rows(&mut self, system: &System) {
-        self.sides = Sides::new(system.configured()).map(|sides| (sides, Side::default()));
+        self.sides = Sides::new(system).map(|sides| (sides, Side::default()));
         self.look(system);
     }
 

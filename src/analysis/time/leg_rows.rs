@@ -60,7 +60,7 @@ impl Leg<'_> {
             return false;
         }
         if self.sides.is_none() {
-            self.sides = Sides::new(self.system.configured());
+            self.sides = Sides::new(self.system);
         }
         let Some(mut sides) = self.sides.take() else {
             return false;

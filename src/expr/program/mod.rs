@@ -38,6 +38,7 @@ mod order;
 #[cfg(feature = "solver")]
 mod peaks;
 mod record;
+mod reduction;
 mod replay;
 mod run;
 mod schedule;

@@ -20,7 +20,7 @@ impl Builder {
     ///
     /// Its inputs are those it needs, in the order in which the builder was asked for them.
     pub fn finish(&self, outputs: &[Value]) -> Program {
-        program(self, outputs, None)
+        self.finished(outputs, None)
     }
 
     /// Returns the program as [`Builder::finish`] does, for inputs that the host lays out itself;
@@ -29,7 +29,14 @@ impl Builder {
     /// An input that is needed and missing in `layout` is appended to it: compare
     /// `program.inputs()`.
     pub fn finish_with_inputs(&self, outputs: &[Value], layout: &[Input]) -> Program {
-        program(self, outputs, Some(layout))
+        self.finished(outputs, Some(layout))
+    }
+
+    fn finished(&self, outputs: &[Value], layout: Option<&[Input]>) -> Program {
+        match self.reduced(outputs) {
+            Some((part, outputs)) => program(&part, &outputs, layout),
+            None => program(self, outputs, layout),
+        }
     }
 }
 

@@ -42,7 +42,7 @@ impl<S: Scalar> Equations<'_, S> {
             let point = self.marker(force.i).p_GM;
             sweep::apply(
                 &mut wrenches,
-                &self.links,
+                self.links(),
                 i.link,
                 point,
                 action.force,
@@ -51,7 +51,7 @@ impl<S: Scalar> Equations<'_, S> {
             if let Some(link) = force.reaction {
                 sweep::apply(
                     &mut wrenches,
-                    &self.links,
+                    self.links(),
                     link,
                     point,
                     -action.force,
@@ -70,7 +70,7 @@ impl<S: Scalar> Equations<'_, S> {
     /// The mass matrix over free coordinates, as rows for [`MassFactor`].
     pub fn mass_rows(&self) -> Vec<Vec<(usize, S)>> {
         let place = |f: usize| self.scene.freedoms[f].v;
-        sweep::mass_matrix(self.scene, &self.links)
+        sweep::mass_matrix(self.scene, self.links())
             .into_iter()
             .enumerate()
             .filter(|(f, _)| place(*f).is_some())
@@ -85,7 +85,7 @@ impl<S: Scalar> Equations<'_, S> {
     pub(super) fn solve(&self) -> Solved<S> {
         let scene = self.scene;
         let (wrenches, actions) = self.loads();
-        let bias = sweep::inward(scene, &self.links, self.gravity(), &wrenches);
+        let bias = sweep::inward(scene, self.links(), self.gravity(), &wrenches);
         let mut f: Vec<S> = scene
             .freedoms
             .iter()
@@ -144,7 +144,7 @@ impl<S: Scalar> Equations<'_, S> {
                     let point = self.marker(*m).p_GM;
                     let link = self.scene.markers[*m].link;
                     let (force, torque) = (action.force.times(l), action.torque.times(l));
-                    sweep::apply(&mut wrenches, &self.links, link, point, force, torque);
+                    sweep::apply(&mut wrenches, self.links(), link, point, force, torque);
                 }
             }
             let links = self.accelerated_links();
@@ -161,7 +161,7 @@ impl<S: Scalar> Equations<'_, S> {
         let way = &self.configuration.elimination;
         Some(
             if way.way != Way::MassMatrix && way.lent_inertia.is_empty() {
-                Factor::Articulated(ArticulatedFactor::new(self.scene, &self.links))
+                Factor::Articulated(ArticulatedFactor::new(self.scene, self.links()))
             } else {
                 let mut rows = self.mass_rows();
                 for (row, &lent) in rows.iter_mut().zip(&way.lent_inertia) {
@@ -182,7 +182,7 @@ impl<S: Scalar> Equations<'_, S> {
         let massless = self.scene.mode == KINEMATIC || self.scene.mode == STATIC;
         let way = &self.configuration.elimination;
         let here = way.way == Way::RowsWhereLoopsClose && way.lent_inertia.is_empty();
-        (here && !massless).then(|| LoopFactor::new(self.scene, &self.links, g, usual_pivots))
+        (here && !massless).then(|| LoopFactor::new(self.scene, self.links(), g, usual_pivots))
     }
 
     /// The diagonal of `G M⁻¹ Gᵀ` over the rows that take part, in their order: their pivots before
@@ -296,7 +296,7 @@ impl<S: Scalar> Equations<'_, S> {
     /// the given multipliers: all zero in equilibrium   (n_v)
     pub fn balance(&self, multipliers: &[S]) -> Vec<S> {
         let (wrenches, _) = self.scratch.while_solving(|| self.loads());
-        let carried = sweep::inward(self.scene, &self.links, self.gravity(), &wrenches);
+        let carried = sweep::inward(self.scene, self.links(), self.gravity(), &wrenches);
         let free = self.scene.freedoms.iter().filter(|f| f.v.is_some());
         let mut f: Vec<S> = free.map(|f| -f.component(&carried[f.link])).collect();
         let active = (0..self.scene.rows.len()).filter(|&r| self.is_active(r));
@@ -322,7 +322,7 @@ impl<S: Scalar> Equations<'_, S> {
                 let point = self.marker(*m).p_GM;
                 let link = self.scene.markers[*m].link;
                 let (force, torque) = (action.force.times(l), action.torque.times(l));
-                sweep::apply(&mut wrenches, &self.links, link, point, force, torque);
+                sweep::apply(&mut wrenches, self.links(), link, point, force, torque);
             }
         }
         let links = sweep::outward(self.scene, &self.coordinates(vdot));
@@ -333,7 +333,7 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// The axis of a freedom, ground axes.
     pub fn freedom_axis(&self, f: &sweep::Freedom) -> Vec3<S> {
-        let rotation = &self.links[f.link].X_GL.rotation;
+        let rotation = &self.links()[f.link].X_GL.rotation;
         rotation.column(f.axis).times(S::constant(f.sign))
     }
 

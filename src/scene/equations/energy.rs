@@ -33,7 +33,7 @@ impl<S: Scalar> Equations<'_, S> {
     /// Kinetic energy, and potential energy in gravity.
     pub fn energy(&self) -> [S; 2] {
         let (mut kinetic, mut potential) = (S::zero(), S::zero());
-        for (link, s) in self.scene.links.iter().zip(&self.links) {
+        for (link, s) in self.scene.links.iter().zip(self.links()) {
             if link.mass == 0.0 && link.inertia == Mat3::zero() {
                 continue;
             }
@@ -80,7 +80,7 @@ impl<S: Scalar> Equations<'_, S> {
                 frame: Frame::identity(),
                 part: None,
             };
-            let reacting = sweep::marker_state(&origin, &self.links);
+            let reacting = sweep::marker_state(&origin, self.links());
             let arm = i.p_GM - reacting.p_GM;
             v = v - reacting.v_GM - reacting.w_GM.cross(arm);
             w -= reacting.w_GM;

@@ -35,7 +35,7 @@ pub use unsupported::{Lack, Unsupported};
 use super::Scene;
 use super::configuration::{Configuration, Configured};
 use super::layout::{Instant, several};
-use super::sweep::{self, Coordinates, LinkState};
+use super::sweep::{self, Coordinates};
 use crate::expr::program::Input;
 use crate::model::{ElementId, Level};
 use crate::physics::action::Action;
@@ -58,8 +58,6 @@ pub struct Equations<'s, S: Scalar> {
     now: Instant<S>,
     /// value, rate and acceleration that each motion prescribes   (n_motions)
     driven: Vec<Jet<S>>,
-    /// with the accelerations of driven coordinates only   (n_links)
-    links: Vec<LinkState<S>>,
     /// notes what is asked for too early instead of complaining
     discovering: bool,
     /// everything else, as it is asked for
@@ -93,13 +91,24 @@ impl<'s, S: Scalar> Equations<'s, S> {
                 ..scene.layout.instant(numbers)
             },
             driven: Vec::new(),
-            links: Vec::new(),
             discovering,
             scratch: Scratch::new(scene),
         };
         this.driven = (0..scene.motions.len()).map(|m| this.drive(m)).collect();
-        this.links = sweep::outward(scene, &this.coordinates(&[]));
         this
+    }
+
+    /// Returns the same instant in a configuration that differs in the order of elimination only:
+    /// links, markers and rows are known there, too.
+    pub(in crate::scene) fn eliminating(&self, configuration: &'s Configuration) -> Self {
+        Self {
+            scene: self.scene,
+            configuration,
+            now: self.now.clone(),
+            driven: self.driven.clone(),
+            discovering: self.discovering,
+            scratch: self.scratch.before_accelerations(self.scene),
+        }
     }
 
     /// Returns what could not be supplied; empty when all is well.
@@ -117,9 +126,10 @@ impl<'s, S: Scalar> Equations<'s, S> {
         S::constant(f64::NAN)
     }
 
-    /// Where every link is and how it moves.
+    /// Where every link is and how it moves, with the accelerations of driven coordinates only.
     pub fn links(&self) -> &[sweep::LinkState<S>] {
-        &self.links
+        let links = || sweep::outward(self.scene, &self.coordinates(&[]));
+        self.scratch.links.get_or_init(links)
     }
 
     fn coordinates<'a>(&'a self, vdot: &'a [S]) -> Coordinates<'a, S> {
@@ -198,7 +208,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
         if let Some(state) = self.scratch.markers.borrow()[m] {
             return state;
         }
-        let state = sweep::marker_state(&self.scene.markers[m], &self.links);
+        let state = sweep::marker_state(&self.scene.markers[m], self.links());
         self.scratch.markers.borrow_mut()[m] = Some(state);
         state
     }
@@ -222,7 +232,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
             if accelerated {
                 self.accelerated_links()
             } else {
-                &self.links
+                self.links()
             },
         )
     }

@@ -105,7 +105,7 @@ impl<S: Scalar> Equations<'_, S> {
         }
         // on the carried link about p_I, ground axes
         let at_i = |link: usize, w: &Wrench<S>| {
-            let X = &self.links[link].X_GL;
+            let X = &self.links()[link].X_GL;
             let force = X.rotation.apply(w.force);
             Action {
                 force,

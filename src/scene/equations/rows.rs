@@ -274,7 +274,7 @@ impl<S: Scalar> Equations<'_, S> {
             let f = &scene.freedoms[k];
             next = scene.carrier[k];
             let Some(v) = f.v else { continue };
-            let X = &self.links[f.link].X_GL;
+            let X = &self.links()[f.link].X_GL;
             let e = X.rotation.column(f.axis).times(S::constant(f.sign));
             let component = if f.turn {
                 e.dot(action.torque + (point - X.position).cross(action.force))

@@ -11,6 +11,8 @@ use std::rc::Rc;
 
 /// Results found so far, and questions that are open.
 pub(super) struct Scratch<S> {
+    /// links with the accelerations of driven coordinates only   (n_links)
+    pub links: OnceCell<Vec<LinkState<S>>>,
     /// poses and velocities of markers   (n_markers)
     pub markers: RefCell<Vec<Option<MarkerState<S>>>>,
     /// values of formulas   (n_formulas)
@@ -41,6 +43,7 @@ impl<S: Copy> Scratch<S> {
     /// Creates the scratch of an instant at which nothing has been asked for.
     pub fn new(scene: &Scene) -> Self {
         Self {
+            links: OnceCell::new(),
             markers: RefCell::new(vec![None; scene.markers.len()]),
             formulas: RefCell::new(vec![None; scene.formulas.len()]),
             rows: RefCell::new(vec![None; scene.rows.len()]),
@@ -53,6 +56,18 @@ impl<S: Copy> Scratch<S> {
             discovered: RefCell::default(),
             rates_open: RefCell::default(),
             complaints: RefCell::default(),
+        }
+    }
+
+    /// Creates the scratch of the same instant at which nothing is known that may depend on
+    /// accelerations.
+    pub fn before_accelerations(&self, scene: &Scene) -> Self {
+        Self {
+            links: self.links.clone(),
+            markers: self.markers.clone(),
+            rows: self.rows.clone(),
+            complaints: self.complaints.clone(),
+            ..Self::new(scene)
         }
     }
 

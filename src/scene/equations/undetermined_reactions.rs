@@ -48,7 +48,7 @@ impl<S: Scalar> Equations<'_, S> {
                 // carriers bear the opposite
                 let opposite = action.times(-l);
                 let (force, torque) = (opposite.force, opposite.torque);
-                sweep::apply(&mut wrenches, &self.links, link, point, force, torque);
+                sweep::apply(&mut wrenches, self.links(), link, point, force, torque);
             }
         }
         self.gather_stress(lambda, &mut wrenches);
@@ -87,7 +87,7 @@ impl<S: Scalar> Equations<'_, S> {
             if !loaded[l] {
                 wrenches[l] = Wrench::zero();
             } else if let Some(p) = scene.links[l].parent {
-                let up = sweep::to_parent(&self.links[l].X_PL, wrenches[l]);
+                let up = sweep::to_parent(&self.links()[l].X_PL, wrenches[l]);
                 wrenches[p].force += up.force;
                 wrenches[p].torque += up.torque;
             }

@@ -20,10 +20,12 @@ pub use sides::{Side, Sides};
 
 use crate::analysis::start::assemble::{self, DEPENDENT};
 use crate::analysis::start::velocities;
+use crate::analysis::system::{RowGradients, System};
 use crate::expr::program::{Program, Work};
 use crate::scene::configuration::Configured;
 use crate::scene::layout::Layout;
-use crate::scene::programs::{record, weights};
+use crate::scene::programs::weights;
+use crate::scene::recorder::{self, Recorder};
 use crate::scene::{Scene, Source};
 use nalgebra::DMatrix;
 use std::cell::RefCell;
@@ -48,7 +50,7 @@ fn active(scene: Configured<'_>) -> Vec<usize> {
     scene.configuration.active_rows().collect()
 }
 
-/// Gradients of the rows that take part, recorded once and evaluated often.
+/// Gradients of the rows that take part, by loops.
 struct Gradients {
     program: Program,
     work: RefCell<Work>,
@@ -60,21 +62,15 @@ struct Gradients {
 }
 
 impl Gradients {
-    /// Records the gradients; `None` where no row takes part.
-    fn of(scene: Configured<'_>) -> Option<Self> {
+    /// Takes the gradients of a system, or records them where other rows took part; `None` where
+    /// no row does.
+    fn of(scene: Configured<'_>, system: &System) -> Option<Self> {
         let rows = active(scene);
-        let mut entries = Vec::new();
-        let program = record(scene, |at| {
-            let mut values = Vec::new();
-            for &r in &rows {
-                for &(v, x) in &at.row(r).gradient {
-                    entries.push((r, v));
-                    values.push(x);
-                }
-            }
-            values
-        });
-        let program = program.ok()?;
+        let RowGradients { entries, program } =
+            match scene.configuration.active == system.configuration.active {
+                true => system.row_gradients().clone(),
+                false => RowGradients::new(&Recorder::new(scene, &recorder::builder())).ok()?,
+            };
         let loops = sides::loops(&rows, &entries, scene.layout.n_v);
         let mut place_of_row = vec![(0, 0); scene.rows.len()];
         let mut column = vec![0; scene.layout.n_v];

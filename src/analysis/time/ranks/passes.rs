@@ -6,6 +6,7 @@
 
 use super::{Gradients, active, gradients, margin, norm, place, weakest};
 use crate::analysis::start::assemble;
+use crate::analysis::system::System;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::row_name;
 use crate::scene::layout::Layout;
@@ -38,13 +39,14 @@ pub struct Pass {
     pub place: Vec<(String, f64)>,
 }
 
-/// Finds the positions between accepted states at which rows become dependent. `states`: numbers of
-/// states in order; `None` separates states that do not follow on.
-pub fn passes(scene: Configured<'_>, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
+/// Finds the positions between accepted states of a system at which rows become dependent, those
+/// that take part in the configuration of `scene`. `states`: numbers of states in order; `None`
+/// separates states that do not follow on.
+pub fn passes(scene: Configured<'_>, system: &System, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
     if states.is_empty() {
         return Vec::new();
     }
-    let Some(search) = Search::new(scene, states) else {
+    let Some(search) = Search::new(scene, system, states) else {
         return Vec::new();
     };
     let most = match scene.layout.n_v {
@@ -119,9 +121,9 @@ struct Search<'s> {
 }
 
 impl<'s> Search<'s> {
-    /// Records the gradients of the rows; `None` where no row takes part.
-    fn new(scene: Configured<'s>, states: &[Option<Vec<f64>>]) -> Option<Self> {
-        let gradients = Gradients::of(scene)?;
+    /// Measures the rows at the states; `None` where no row takes part.
+    fn new(scene: Configured<'s>, system: &System, states: &[Option<Vec<f64>>]) -> Option<Self> {
+        let gradients = Gradients::of(scene, system)?;
         let mut usual = vec![0.0_f64; scene.rows.len()];
         for n in states.iter().flatten() {
             for (l, rows) in gradients.loops.iter().zip(gradients.at(n)) {

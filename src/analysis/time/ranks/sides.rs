@@ -12,14 +12,13 @@
 
 use super::passes::{DEPENDENT_THERE, Valley};
 use super::select;
-use crate::analysis::system::System;
+use crate::analysis::system::{RowGradients, System};
 use crate::analysis::time::states::{Cubic, Node};
 use crate::expr::program::{Program, Work};
 use crate::numeric::eigenvalues::eigenvalues;
 use crate::numeric::envelope;
-use crate::scene::configuration::Configured;
 use crate::scene::mover::Mover;
-use crate::scene::programs::{record, weights};
+use crate::scene::programs::weights;
 use nalgebra::{DMatrix, DVectorView};
 use std::collections::BTreeMap;
 
@@ -85,22 +84,12 @@ pub struct Sides {
 }
 
 impl Sides {
-    /// Records the gradients of the rows that take part; `None` where none does.
-    pub fn new(scene: Configured<'_>) -> Option<Self> {
+    /// Takes the gradients of the rows that take part; `None` where none does.
+    pub fn new(system: &System) -> Option<Self> {
+        let scene = system.configured();
         let rows: Vec<usize> = scene.configuration.active_rows().collect();
-        let mut entries = Vec::new();
-        let program = record(scene, |at| {
-            let mut values = Vec::new();
-            for &r in &rows {
-                for &(v, x) in &at.row(r).gradient {
-                    entries.push((r, v));
-                    values.push(x);
-                }
-            }
-            values
-        });
-        let program = program.ok()?;
-        let loops = loops(&rows, &entries, scene.layout.n_v);
+        let RowGradients { entries, program } = system.row_gradients();
+        let loops = loops(&rows, entries, scene.layout.n_v);
         let w = weights(&scene);
         let mut loop_of = vec![None; scene.rows.len()];
         for (k, l) in loops.iter().enumerate() {
@@ -117,7 +106,7 @@ impl Sides {
             usual: loops.iter().map(|l| vec![0.0; l.rows.len()]).collect(),
             loops,
             values: vec![0.0; program.n_outputs()],
-            program,
+            program: program.clone(),
             work: Work::default(),
             places,
         })

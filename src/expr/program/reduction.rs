@@ -1,0 +1,75 @@
+//! A builder reduced to what some values need, in the same order.
+//!
+//! Several programs may be recorded into one builder, and each needs a part of its nodes. What
+//! follows a recording takes time for each node that there is.
+
+use super::builder::Builder;
+use super::node::{Node, Value};
+
+/// Part of the nodes from which on nothing is gained by leaving the others out.
+const NEARLY_ALL: f64 = 0.8;
+/// Place of a node that is not needed.
+const NONE: Value = Value(u32::MAX);
+
+impl Builder {
+    /// Returns the part of the builder that some values need, and these values in it. Its nodes
+    /// stand in the same order; it is there to be read, as it does not find equal nodes again.
+    /// `None`: they need nearly all of it.
+    pub(super) fn reduced(&self, values: &[Value]) -> Option<(Builder, Vec<Value>)> {
+        let n = values.iter().map(|v| v.index() + 1).max().unwrap_or(0);
+        let mut needed = self.needed(values, n);
+        for k in (0..n).rev() {
+            if let (true, Node::Partial { call, .. }) = (needed[k], self.nodes[k]) {
+                // what it is a derivative of is read, though it need not be computed
+                needed[call.index()] = true;
+            }
+        }
+        let n_needed = needed.iter().filter(|&&n| n).count();
+        if n_needed as f64 >= NEARLY_ALL * self.nodes.len() as f64 {
+            return None;
+        }
+        let mut part = Builder::new(self.folding());
+        part.inputs.clone_from(&self.inputs);
+        part.tables.clone_from(&self.tables);
+        part.nodes.reserve(n_needed);
+        let mut places = vec![NONE; n];
+        for k in (0..n).filter(|&k| needed[k]) {
+            let node = self.copied(&self.nodes[k], &places, &mut part.arguments);
+            places[k] = Value(part.nodes.len() as u32);
+            part.nodes.push(node);
+        }
+        let values = values.iter().map(|v| places[v.index()]).collect();
+        Some((part, values))
+    }
+
+    /// Returns a node with its operands at their new places, and lists its arguments.
+    fn copied(&self, node: &Node, places: &[Value], arguments: &mut Vec<Value>) -> Node {
+        let of = |v: Value| places[v.index()];
+        let listed = arguments.len() as u32;
+        if let Some(range) = self.list(node) {
+            arguments.extend(self.arguments[range].iter().map(|&v| of(v)));
+        }
+        match *node {
+            Node::Constant(_) | Node::Input(_) => *node,
+            Node::Unary(op, x) => Node::Unary(op, of(x)),
+            Node::Whole(x, n) => Node::Whole(of(x), n),
+            Node::Binary(op, a, b) => Node::Binary(op, of(a), of(b)),
+            Node::Compare(op, a, b) => Node::Compare(op, of(a), of(b)),
+            Node::Select(c, yes, no) => Node::Select(of(c), of(yes), of(no)),
+            Node::If(_) => Node::If(listed),
+            Node::Lookup { table, order, x } => Node::Lookup {
+                table,
+                order,
+                x: of(x),
+            },
+            Node::Call {
+                function, count, ..
+            } => Node::Call {
+                function,
+                first: listed,
+                count,
+            },
+            Node::Partial { call, k } => Node::Partial { call: of(call), k },
+        }
+    }
+}
