@@ -75,6 +75,14 @@ impl<'s, 'b> Recorder<'s, 'b> {
         })
     }
 
+    /// Returns how many operations the program of some values takes, without making it.
+    ///
+    /// # Errors
+    /// As [`Recorder::program`].
+    pub fn count_operations(&self, values: &[Sym<'b>]) -> Result<usize, Vec<Unsupported>> {
+        self.end(values, |builder, values| builder.count_operations(&values))
+    }
+
     /// Returns what `end` makes of some values of the instant.
     ///
     /// # Errors

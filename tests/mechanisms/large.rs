@@ -203,6 +203,8 @@ fn programs_recorded_together_compute_the_bits_that_each_computes_alone() {
         let rate = programs::rate(at);
         let changes = programs::projection(&scene, at, at.velocities());
         let together = [&changes, &rate].map(|values| recorder.program(values).unwrap());
+        let counted = [&changes, &rate].map(|values| recorder.count_operations(values).unwrap());
+        assert_eq!(counted, [0, 1].map(|k: usize| together[k].n_operations()));
         let alone = [
             programs::record(here, |at| programs::projection(&here, at, at.velocities())).unwrap(),
             programs::record(here, |at| programs::rate(at)).unwrap(),

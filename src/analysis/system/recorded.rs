@@ -172,18 +172,19 @@ fn record_together(
     let second = with(Way::MassMatrix);
     let builders = [recorder::builder(), recorder::builder()];
     let mut recorder = Recorder::new(scene.within(&first), &builders[0]);
-    let mut rate = recorder.program(&programs::rate(recorder.at()))?;
+    let mut rate = programs::rate(recorder.at());
     if !rows_where_loops_close && scene.depth() <= MAX_DEPTH_OF_MATRIX {
         let other = match scene.loops.is_empty() {
             true => recorder.eliminating(&second),
             // unknowns of loops are eliminated anew
             false => Recorder::new(scene.within(&second), &builders[1]),
         };
-        let matrix = other.program(&programs::rate(other.at()))?;
-        if matrix.n_operations() <= rate.n_operations() {
+        let matrix = programs::rate(other.at());
+        if other.count_operations(&matrix)? <= recorder.count_operations(&rate)? {
             (rate, recorder) = (matrix, other);
         }
     }
+    let rate = recorder.program(&rate)?;
     Ok(Together {
         way: recorder.scene().configuration.elimination.way,
         rate,

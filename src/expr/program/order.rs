@@ -28,8 +28,6 @@ pub(super) enum Item {
 #[derive(Debug)]
 pub(super) struct Order {
     pub(super) items: Vec<Item>,
-    /// how often each node is an operand or an output; 0 for what is not needed
-    pub(super) uses: Vec<u32>,
     /// comparisons that exist only inside the selections they decide
     pub(super) inlined: Vec<bool>,
     /// selections whose sides stand together, by the one that `Begin` and `End` name, in the order
@@ -56,47 +54,16 @@ impl Order {
         let guards = Guards::new(builder, outputs);
         let mut order = Order {
             items: Vec::new(),
-            uses: vec![0; builder.nodes.len()],
-            inlined: vec![false; builder.nodes.len()],
+            inlined: inlined(builder, outputs, |k| guards.of[k] != NEVER),
             groups: HashMap::default(),
             is_jumped: vec![false; builder.nodes.len()],
         };
-        order.count(builder, outputs, &guards);
         let (items, groups) = Walk::new(builder, &guards, &order).run(outputs);
         for member in groups.values().flatten() {
             order.is_jumped[member.index()] = true;
         }
         (order.items, order.groups) = (items, groups);
         order
-    }
-
-    /// Counts uses, and finds comparisons that only decide selections.
-    fn count(&mut self, builder: &Builder, outputs: &[Value], guards: &Guards) {
-        let mut decides = vec![0; builder.nodes.len()];
-        for v in outputs {
-            self.uses[v.index()] += 1;
-        }
-        for (k, node) in builder.nodes.iter().enumerate() {
-            if guards.of[k] == NEVER {
-                continue;
-            }
-            builder.operands(node, |v| self.uses[v.index()] += 1);
-            if let Node::Select(condition, ..) = node {
-                decides[condition.index()] += 1;
-            }
-        }
-        for (k, node) in builder.nodes.iter().enumerate() {
-            self.inlined[k] =
-                matches!(node, Node::Compare(..)) && self.uses[k] > 0 && decides[k] == self.uses[k];
-        }
-        // a comparison that is repeated in every selection uses its operands there
-        for (k, node) in builder.nodes.iter().enumerate() {
-            if let (true, Node::Compare(_, a, b)) = (self.inlined[k], node) {
-                for x in [a, b] {
-                    self.uses[x.index()] += self.uses[k] - 1;
-                }
-            }
-        }
     }
 
     /// Calls `f` with the operands of a node; those of an inlined comparison in place of it, and
@@ -115,6 +82,40 @@ impl Order {
         if let Some((base, _)) = builder.half_power(node) {
             f(base);
         }
+    }
+}
+
+/// Returns which comparisons only decide selections, by node.
+fn inlined(builder: &Builder, outputs: &[Value], is_needed: impl Fn(usize) -> bool) -> Vec<bool> {
+    let (mut uses, mut decides) = (vec![0; builder.nodes.len()], vec![0; builder.nodes.len()]);
+    for v in outputs {
+        uses[v.index()] += 1;
+    }
+    for (k, node) in builder.nodes.iter().enumerate() {
+        if !is_needed(k) {
+            continue;
+        }
+        builder.operands(node, |v| uses[v.index()] += 1);
+        if let Node::Select(condition, ..) = node {
+            decides[condition.index()] += 1;
+        }
+    }
+    let is_inlined = |(k, node): (usize, &Node)| {
+        matches!(node, Node::Compare(..)) && uses[k] > 0 && decides[k] == uses[k]
+    };
+    builder.nodes.iter().enumerate().map(is_inlined).collect()
+}
+
+impl Builder {
+    /// Returns how many operations the program of some values takes, without making it.
+    pub fn count_operations(&self, outputs: &[Value]) -> usize {
+        let needed = self.needed(outputs, self.nodes.len());
+        let inlined = inlined(self, outputs, |k| needed[k]);
+        let is_operation = |k: &usize| {
+            let is_read = matches!(self.nodes[*k], Node::Constant(_) | Node::Input(_));
+            needed[*k] && !is_read && !inlined[*k]
+        };
+        (0..self.nodes.len()).filter(is_operation).count()
     }
 }
 

@@ -213,6 +213,7 @@ proptest! {
         let mut builder = Builder::new(Folding::Strict);
         let outputs: Vec<Value> = formulas.iter().map(|f| record(f, &mut builder)).collect();
         let program = builder.finish_with_inputs(&outputs, &layout());
+        prop_assert_eq!(builder.count_operations(&outputs), program.n_operations());
         let mut out = vec![0.0; outputs.len()];
         let mut work = Work::default();
         for _ in 0..2 {
@@ -221,6 +222,13 @@ proptest! {
                 let want = f.eval(&x);
                 prop_assert!(same_bits(*got, want), "{got} {want}");
             }
+        }
+        // each by itself, reduced to what it needs of the same builder
+        for (&output, f) in outputs.iter().zip(&formulas) {
+            let program = builder.finish_with_inputs(&[output], &layout());
+            prop_assert_eq!(builder.count_operations(&[output]), program.n_operations());
+            let (got, want) = (program.value(&x, &mut work), f.eval(&x));
+            prop_assert!(same_bits(got, want), "{got} {want}");
         }
     }
 
