@@ -178,7 +178,8 @@ impl Reflected {
         loop {
             let (column, x) = match (own.peek(), other.peek()) {
                 (Some(&(a, x)), Some(&&(b, y))) if a == b => {
-                    (own.next(), other.next());
+                    own.next();
+                    other.next();
                     (a, x - along * y)
                 }
                 (Some(&(a, x)), Some(&&(b, _))) if a < b => {
