@@ -1,7 +1,7 @@
 //! The comparison of two runs: the largest difference of every channel, when, and how large it is
 //! beside the channel's range and its bars of error.
 
-use super::Run;
+use super::{Kind, Run};
 use crate::diagnostic::Diagnostic;
 
 /// Difference of two times that are the same, as a part of the span of the runs: times are printed
@@ -73,7 +73,7 @@ struct Pair {
 /// # Errors
 /// When there is no time to compare at.
 pub fn compare(a: &Run, b: &Run, interpolate: bool) -> Result<Comparison, Diagnostic> {
-    let rows = [a, b].map(|run| run.table_rows().collect::<Vec<usize>>());
+    let rows = [compared_rows(a, b), compared_rows(b, a)];
     let times = |run: &Run, rows: &[usize]| -> Vec<f64> {
         let time = run.columns.first().map_or(&[][..], |c| &c.values);
         rows.iter().map(|&row| time[row]).collect()
@@ -129,6 +129,18 @@ pub fn compare(a: &Run, b: &Run, interpolate: bool) -> Result<Comparison, Diagno
         .channels
         .sort_by(|x, y| y.relative().total_cmp(&x.relative()));
     Ok(found)
+}
+
+/// Returns the rows of a run that are compared: those of its tables, without those of assembly where
+/// the other run has none, as those of other programs.
+fn compared_rows(run: &Run, other: &Run) -> Vec<usize> {
+    let is_assembly = |kind: Option<Kind>| kind == Some(Kind::InitialConditions);
+    let has_sequences = !other.sequences.is_empty();
+    let has_assembly = other.sequences.iter().any(|s| is_assembly(Some(s.kind)));
+    let keeps_all = has_assembly || !has_sequences;
+    let rows = run.table_rows();
+    rows.filter(|row| keeps_all || !is_assembly(run.kind_of(*row)))
+        .collect()
 }
 
 /// Returns the values of a column in some rows.
@@ -302,6 +314,26 @@ mod tests {
         let b = run(&[0.1, 0.2], &[("x", |t| t)]);
         let refused = compare(&a, &b, false).unwrap_err();
         assert_eq!(refused.code, "no_shared_time");
+    }
+
+    #[test]
+    fn the_row_of_assembly_is_no_row_of_rest() {
+        let [mut ours, mut other] = [(); 2].map(|()| Run::new("r", "t", Units::default()));
+        let rows = |run: &mut Run, all: &[(Kind, f64)]| {
+            run.add_column("x", "");
+            for &(kind, x) in all {
+                run.begin(kind);
+                run.push(&[0.0, x]);
+                run.end();
+            }
+        };
+        use Kind::{Dynamic, InitialConditions, Static};
+        rows(&mut ours, &[(InitialConditions, 0.0), (Static, 5.0)]);
+        rows(&mut other, &[(Static, 5.0), (Dynamic, 5.0)]);
+        for [a, b] in [[&ours, &other], [&other, &ours]] {
+            assert_eq!(compare(a, b, false).unwrap().channels[0].largest, 0.0);
+        }
+        assert_eq!(compare(&ours, &ours, false).unwrap().outputs, 2);
     }
 
     #[test]
