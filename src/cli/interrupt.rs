@@ -2,7 +2,7 @@
 //! and keep what it has, the second ends the program at once.
 //!
 //! Where nothing polls (while a large model is put together), a run that has no results yet ends by
-//! itself a moment later.
+//! itself a moment later; one that has them is ended by its guard (`limit.rs`), which keeps them.
 
 use crate::analysis::watch::Watch;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,7 +15,7 @@ static SEEN: AtomicBool = AtomicBool::new(false);
 static HAS_RESULTS: AtomicBool = AtomicBool::new(false);
 
 /// Time that a run without results may go on without seeing the request to stop.
-const PATIENCE: Duration = Duration::from_millis(700);
+pub const PATIENCE: Duration = Duration::from_millis(700);
 
 /// Returns the flag that loops poll; Ctrl-C sets it once [`install`] has been called.
 pub fn flag() -> &'static AtomicBool {
@@ -38,6 +38,11 @@ impl Watch for Listener {
     fn interrupted(&mut self) -> bool {
         requested()
     }
+}
+
+/// Returns whether the user has asked to stop and nothing has seen it.
+pub fn is_unseen() -> bool {
+    STOP.load(Ordering::Relaxed) && !SEEN.load(Ordering::Relaxed)
 }
 
 /// Forgets that the user asked to stop: what was going on has ended, and the program goes on.

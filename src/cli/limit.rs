@@ -1,25 +1,30 @@
 //! `--limit`: durations as people type them, and the guard that ends a run whose limit has been
-//! reached where nothing looks at it.
+//! reached, or whose user has asked to stop, where nothing looks at it.
 //!
-//! A session looks at its limit after each step and each phase of setting up. One phase of a large
-//! model may take longer than all that is permitted: then the guard writes what earlier simulations
-//! have left, and ends the process.
+//! A session looks at its limit, and at Ctrl-C, after each step and each phase of setting up. One
+//! phase of a large model may take longer than all that is permitted: then the guard writes what
+//! earlier simulations have left, and ends the process.
 
 use super::output::Tables;
-use super::{Exit, complain, remark, summary};
+use super::{Exit, complain, interrupt, remark, summary};
 use crate::analysis::session::{Activity, Session};
 use crate::analysis::work_limit::ProcessClock;
 use crate::results::{Event, Run, Status};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Time between two looks at the clock of the processor.
 const LOOK: Duration = Duration::from_millis(100);
 /// Code of the reason, which `cognate explain` knows.
 const WORK_LIMIT: &str = "work_limit";
+/// The same for a user who asked to stop.
+const INTERRUPTED: &str = "interrupted";
 /// Processor time beyond the limit in which a session can end by itself: seconds, and a part of the
 /// limit.
 const GRACE: [f64; 2] = [1.0, 0.1];
+/// Part of the time of a run that copies of its results may take where there is no limit.
+const COPYING_SHARE: f64 = 0.05;
 
 /// Reads a duration, in s: `60`, `60s`, `500ms`, `2min`, `1h`.
 ///
@@ -49,44 +54,89 @@ struct Shared {
     activity: Option<Activity>,
     /// the files of the run; `None`: the model is being read
     tables: Option<Tables>,
+    /// whether simulations have ended since, of which there is no copy
+    is_stale: bool,
+    /// time that copies have taken
+    copying: Duration,
     /// the run writes its results: the guard has nothing left to do
     is_done: bool,
 }
 
-/// A thread that ends the process when a limit has been exceeded and nobody has seen it.
+/// A thread that ends the process when a limit has been exceeded, or the user asked to stop, and
+/// nobody has seen it.
 #[derive(Clone)]
-pub struct Guard(Arc<Mutex<Shared>>);
+pub struct Guard {
+    shared: Arc<Mutex<Shared>>,
+    /// whether a simulation takes steps, and looks by itself
+    moves: Arc<AtomicBool>,
+    limit: Option<f64>,
+    clock: ProcessClock,
+}
+
+/// A reason to end the process.
+#[derive(Clone, Copy, Debug)]
+enum Ending {
+    /// the limit is exceeded, in s
+    Limit(f64),
+    /// the user asked to stop
+    Asked,
+}
 
 impl Guard {
-    /// Sets a guard over a run, permitting so many seconds of processor time.
-    pub fn set(limit: f64) -> Self {
-        let guard = Self(Arc::new(Mutex::new(Shared {
+    /// Sets a guard over a run, which may use so many seconds of processor time.
+    pub fn set(limit: Option<f64>) -> Self {
+        let shared = Shared {
             run: None,
             activity: None,
             tables: None,
+            is_stale: false,
+            copying: Duration::ZERO,
             is_done: false,
-        })));
+        };
+        let guard = Self {
+            shared: Arc::new(Mutex::new(shared)),
+            moves: Arc::default(),
+            limit,
+            clock: ProcessClock::start(),
+        };
         let watched = guard.clone();
-        std::thread::spawn(move || watched.watch(limit));
+        std::thread::spawn(move || watched.watch());
         guard
     }
 
     fn with<T>(&self, f: impl FnOnce(&mut Shared) -> T) -> T {
-        f(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+        f(&mut self.shared.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Tells what a session is doing, for the guard to say, and where its results go.
     pub fn follow(&self, session: &Session, tables: &Tables) {
         self.with(|shared| {
-            shared.run = Some(session.run.clone());
+            shared.run = self.limit.map(|_| session.run.clone());
             shared.activity = Some(session.activity());
             shared.tables = Some(tables.clone());
         });
     }
 
-    /// Keeps the results so far.
+    /// Notes that a simulation takes steps.
+    pub fn moves(&self) {
+        self.moves.store(true, Ordering::Relaxed);
+    }
+
+    /// Keeps the results so far; where there is no limit and copies take long beside the run, only
+    /// that they are there. Such a run looks for itself often enough.
     pub fn keep(&self, run: &Run) {
-        self.with(|shared| shared.run = Some(run.clone()));
+        self.moves.store(false, Ordering::Relaxed);
+        self.with(|shared| {
+            let permitted = self.clock.elapsed().mul_f64(COPYING_SHARE);
+            if self.limit.is_none() && shared.copying > permitted {
+                shared.is_stale = true;
+                return;
+            }
+            let clock = Instant::now();
+            shared.run = Some(run.clone());
+            shared.copying += clock.elapsed();
+            shared.is_stale = false;
+        });
     }
 
     /// Ends the guard: the run ends by itself.
@@ -94,18 +144,19 @@ impl Guard {
         self.with(|shared| shared.is_done = true);
     }
 
-    /// Waits until the limit is exceeded or the run is done.
-    fn watch(&self, limit: f64) {
-        let [seconds, part] = GRACE;
-        let permitted = limit + seconds.max(part * limit);
-        let clock = ProcessClock::start();
+    /// Waits until there is a reason to end the process, or the run is done.
+    fn watch(&self) {
+        let mut asked: Option<Instant> = None;
         loop {
             std::thread::sleep(LOOK);
-            let over = clock.seconds() > permitted;
+            asked = asked.or_else(|| interrupt::is_unseen().then(Instant::now));
+            let ending = self.ending(asked);
             self.with(|shared| {
-                if over && !shared.is_done {
+                let is_kept = shared.run.is_some() && !shared.is_stale;
+                let ending = ending.filter(|e| matches!(e, Ending::Limit(_)) || is_kept);
+                if let Some(ending) = ending.filter(|_| !shared.is_done) {
                     // held until the process has ended: nobody else writes
-                    end(shared, limit);
+                    end(shared, ending);
                 }
             });
             if self.with(|shared| shared.is_done) {
@@ -113,27 +164,52 @@ impl Guard {
             }
         }
     }
+
+    /// Returns a reason to end the process. `asked`: when it was seen that the user asked to stop.
+    fn ending(&self, asked: Option<Instant>) -> Option<Ending> {
+        let is_over = self.limit.filter(|limit| {
+            let [seconds, part] = GRACE;
+            self.clock.seconds() > limit + seconds.max(part * limit)
+        });
+        let waited = asked.is_some_and(|asked| asked.elapsed() >= interrupt::PATIENCE);
+        let is_blind = waited && interrupt::is_unseen() && !self.moves.load(Ordering::Relaxed);
+        is_over
+            .map(Ending::Limit)
+            .or(is_blind.then_some(Ending::Asked))
+    }
 }
 
 /// Writes the results of the simulations that have ended, and ends the process.
-fn end(shared: &mut Shared, limit: f64) -> ! {
+fn end(shared: &mut Shared, ending: Ending) -> ! {
     let activity = shared.activity.as_ref().map(ToString::to_string);
     let activity = activity.unwrap_or_else(|| "the model was being read".into());
-    let reason = format!(
-        "the limit of {limit} s of processor time was exceeded: {activity}; results of earlier simulations are kept"
-    );
+    let (status, code, exit, reason) = match ending {
+        Ending::Limit(limit) => (
+            Status::Limit,
+            WORK_LIMIT,
+            Exit::Limit,
+            format!("the limit of {limit} s of processor time was exceeded"),
+        ),
+        Ending::Asked => (
+            Status::Interrupted,
+            INTERRUPTED,
+            Exit::Interrupted,
+            "interrupted while a simulation was set up".into(),
+        ),
+    };
+    let reason = format!("{reason}: {activity}; results of earlier simulations are kept");
     let (Some(mut run), Some(tables)) = (shared.run.take(), &shared.tables) else {
         remark(reason);
-        std::process::exit(Exit::Limit.code().into())
+        std::process::exit(exit.code().into())
     };
-    run.record.status = Status::Limit;
-    run.record.stop_code = WORK_LIMIT;
+    run.record.status = status;
+    run.record.stop_code = code;
     run.record.stop_reason.clone_from(&reason);
     run.log.push(Event::Error(reason));
     let exit = match tables.complete_early(&mut run) {
         Ok(files) => {
             remark(summary::facts(&run, &files).trim_end());
-            Exit::Limit
+            exit
         }
         Err(d) => {
             complain(&[d], &super::render::Sources::default());

@@ -89,7 +89,7 @@ pub struct Args {
 struct Terminal<'a> {
     progress: &'a std::cell::RefCell<Progress>,
     tables: output::Tables,
-    guard: Option<&'a Guard>,
+    guard: &'a Guard,
 }
 
 impl Watch for Terminal<'_> {
@@ -98,12 +98,11 @@ impl Watch for Terminal<'_> {
     }
     fn progress(&mut self, t: f64, _h: f64, stats: &Stats) {
         interrupt::results_begin();
+        self.guard.moves();
         self.progress.borrow().at(t, stats.steps);
     }
     fn simulated(&mut self, run: &Run) {
-        if let Some(guard) = self.guard {
-            guard.keep(run);
-        }
+        self.guard.keep(run);
     }
 }
 
@@ -114,7 +113,7 @@ impl Watch for Terminal<'_> {
 pub fn run(args: &Args) -> Outcome {
     let clock = ProcessClock::start();
     interrupt::install_for_run();
-    let guard = args.limits.limit.map(Guard::set);
+    let guard = Guard::set(args.limits.limit);
 
     // read
     let is_command = has_commands(&args.model);
@@ -132,19 +131,20 @@ pub fn run(args: &Args) -> Outcome {
     seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;
     let tables = output::Tables::open(&args.output, args.out.as_deref(), &mut session)?;
-    guard.iter().for_each(|g| g.follow(&session, &tables));
+    guard.follow(&session, &tables);
 
     // solve
-    let outcome = solve(args, &mut session, &steps, (&tables, guard.as_ref()));
+    let outcome = solve(args, &mut session, &steps, (&tables, &guard));
     let (status, failure) = told(&mut session, outcome);
     let elapsed = clock.elapsed().as_secs_f64();
     let cpu = clock.seconds();
     session.run.log.push(Event::Finished { elapsed, cpu });
 
     // write and report
-    guard.iter().for_each(Guard::done);
+    guard.done();
     let shown = !args.json && !args.quiet;
-    let is_refused = failure.is_some() && session.run.rows() == 0;
+    let is_nothing = failure.is_some() || status == Status::Interrupted;
+    let is_refused = is_nothing && session.run.rows() == 0;
     let (written, record) = if is_refused {
         // what an earlier run has written stays
         (Vec::new(), json::text(&json::record(&session.run)))
@@ -370,7 +370,7 @@ fn solve(
     args: &Args,
     session: &mut Session,
     steps: &[Step],
-    (tables, guard): (&output::Tables, Option<&Guard>),
+    (tables, guard): (&output::Tables, &Guard),
 ) -> Result<Status, Error> {
     let progress = std::cell::RefCell::new(Progress::new(true, 0.0, 1.0));
     let begin = |start: f64, end: f64| {

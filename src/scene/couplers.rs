@@ -200,7 +200,7 @@ impl Builder<'_> {
         cv: u32,
     ) -> Option<GearBody> {
         let joint = active_joint(c, name, joint_id)?;
-        let geared = ElementKind::Joint.id(joint_id);
+        let geared = self.model.called(ElementKind::Joint.id(joint_id));
         let displacements = joint.kind.displacements();
         if displacements == Displacements::None {
             c.error(name, format!("{geared} cannot carry a gear: it must be revolute, translational or cylindrical"));
@@ -213,7 +213,7 @@ impl Builder<'_> {
         if owner(joint.j) != carrier {
             let on = |o: Option<MarkerOwner>| {
                 let body = o.and_then(MarkerOwner::body);
-                body.map_or_else(|| "no part".into(), String::from)
+                body.map_or_else(|| "no part".into(), |body| self.model.called(body))
             };
             let advice = if owner(joint.i) == carrier {
                 format!("exchange I and J of {geared}")
@@ -223,7 +223,7 @@ impl Builder<'_> {
             let what = format!(
                 "J of {geared} is on {}, but CV ({}) is on {}: the carrier must own both J markers and CV",
                 on(owner(joint.j)),
-                ElementKind::Marker.id(cv),
+                self.model.called(ElementKind::Marker.id(cv)),
                 on(carrier)
             );
             c.errors.push(
@@ -247,7 +247,7 @@ impl Builder<'_> {
             };
             let what = format!(
                 "{geared} gives CV ({}) no velocity along its z axis: {why}",
-                ElementKind::Marker.id(cv)
+                self.model.called(ElementKind::Marker.id(cv))
             );
             c.errors.push(
                 Diagnostic::error("gear_line_of_action", what)

@@ -39,7 +39,7 @@ impl Builder<'_> {
             }
             if let Some(offence) = offence(&self.scene, formula, Allowed::Places) {
                 c.errors.push(
-                    Diagnostic::error("gcon_reads", offence.to_string())
+                    Diagnostic::error("gcon_reads", offence.rest(model))
                         .element(name)
                         .help("a GCON relates places: displacements and angles of markers, TIME, and VARIABLEs of these"),
                 );

@@ -191,7 +191,7 @@ impl Builder<'_> {
                 continue;
             }
             if let Some(offence) = offence(&self.scene, motion.formula, Allowed::Time) {
-                let what = offence.to_string();
+                let what = offence.rest(self.model);
                 c.errors.push(
                     Diagnostic::error("motion_reads", what)
                         .element(ElementKind::Motion.id(motion.id))

@@ -8,7 +8,7 @@
 use super::{Entry, Scene};
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::Input;
-use crate::model::ElementKind;
+use crate::model::{ElementKind, Model};
 use std::fmt;
 
 /// Inputs that a function may read.
@@ -84,14 +84,16 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Writes "its function reads DX(1,2) (in VARIABLE/7): it depends on where the parts are".
-impl fmt::Display for Offence {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "its function reads {}", input_name(self.input))?;
-        if let Some(id) = self.variable {
-            write!(f, " (in {})", ElementKind::Variable.id(id))?;
-        }
-        write!(f, ": {}", self.why)
+impl Offence {
+    /// Returns the sentence after the element: "its function reads DX(1,2) (in VARIABLE/7): it
+    /// depends on where the parts are".
+    pub(super) fn rest(&self, model: &Model) -> String {
+        let within = self
+            .variable
+            .map(|id| model.called(ElementKind::Variable.id(id)));
+        let within = within.map_or_else(String::new, |variable| format!(" (in {variable})"));
+        let read = input_name(self.input);
+        format!("its function reads {read}{within}: {}", self.why)
     }
 }
 

@@ -157,3 +157,29 @@ fn a_limit_that_is_not_reached_changes_no_bit() {
     };
     assert_eq!(run(None), run(Some(3600.0)));
 }
+
+#[test]
+fn a_set_up_that_is_interrupted_keeps_the_rows_of_the_simulation_before() {
+    const PENDULUM: &str = "PART/2, MASS=2, CM=20, IP=1,1,1\nMARKER/20, PART=2, QP=1,0,0\nMARKER/21, PART=2\n\
+                            JOINT/1, REVOLUTE, I=21, J=1\nACCGRAV/JGRAV=-9.81\nVARIABLE/1, FUNCTION=0\n";
+    let mut session = begin(model(PENDULUM), "pendulum", Options::default());
+    let mut watch = Impatient {
+        looks: 0,
+        most: u64::MAX,
+    };
+    let first = session.simulate(Analysis::Dynamic, 1.0, 10, &mut watch);
+    assert_eq!(first.expect("a run"), Status::Completed);
+    let (rows, looks) = (session.run.rows(), watch.looks);
+    // another model, which is compiled, assembled and recorded: the caller is asked on the way
+    session.model.parts.get_mut(&2).expect("a part").mass = 3.0;
+    watch.most = looks + 2;
+    let second = session.simulate(Analysis::Dynamic, 2.0, 10, &mut watch);
+    assert_eq!(second.expect("a run"), Status::Interrupted);
+    assert_eq!(session.run.rows(), rows);
+    assert_eq!(session.time(), 1.0);
+    // and the session goes on
+    watch.most = u64::MAX;
+    let third = session.simulate(Analysis::Dynamic, 2.0, 10, &mut watch);
+    assert_eq!(third.expect("a run"), Status::Completed);
+    assert_eq!(session.time(), 2.0);
+}

@@ -18,6 +18,7 @@ mod instances;
 mod joints;
 mod large;
 mod laws;
+mod leaps;
 mod left_out;
 mod massless;
 mod mechanisms;

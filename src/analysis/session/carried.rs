@@ -11,7 +11,7 @@ use crate::scene::equations::Equations;
 use crate::scene::history::{AngleId, DelayId};
 use crate::scene::layout::{Layout, State};
 use crate::scene::loops::Key;
-use crate::scene::unknown::UnknownId;
+use crate::scene::unknown::{CoordinateId, UnknownId};
 use crate::space::{MarkerState, Vec3};
 use std::collections::BTreeMap;
 
@@ -28,6 +28,8 @@ pub(super) struct Carried {
     pub(super) at_rest: bool,
     /// place and motion of every part (point masses: true), for when the unknowns are others
     pub(super) parts: Vec<(ElementId, MarkerState<f64>)>,
+    /// value and rate of every coordinate of the forest but those of balls
+    pub(super) coordinates: BTreeMap<CoordinateId, [f64; 2]>,
     /// angles with the turns that they have counted   [rad]
     pub(super) turns: BTreeMap<AngleId, f64>,
     /// values of EVALUATE of sensors, by their numbers
@@ -54,11 +56,20 @@ impl Session {
         let at = Equations::new(system.configured(), &numbers);
         let parts = system.scene.parts.iter().enumerate();
         let parts = parts.map(|(k, p)| (p.id, at.part(k, false))).collect();
+        let coordinates = system.scene.coordinates.iter().enumerate();
+        let coordinates = coordinates
+            .filter(|(_, c)| c.initial.is_some())
+            .map(|(k, c)| {
+                let jet = at.coordinate(k);
+                (c.id, [jet.value, jet.first])
+            });
+        let coordinates = coordinates.collect();
         let counted = system.scene.counted.iter();
         let turns = counted.map(|c| (c.id, at.counted(c.id))).collect();
         let unknowns = &system.scene.unknowns;
         self.carried = Some(Carried {
             t: numbers[Layout::TIME],
+            coordinates,
             turns,
             sensors: sensed(&system.scene, &numbers),
             samples: system.recorded.samples.held(&numbers),

@@ -124,7 +124,8 @@ impl Session {
         self.columns_program = None;
         (self.linear, self.saved) = (Vec::new(), std::collections::BTreeMap::new());
         (self.gaps, self.states) = (Gaps::default(), Vec::new());
-        (self.halted, self.used_up) = (false, None);
+        (self.halted, self.ended_early) = (false, None);
+        self.leapt.clear();
         self.stiffness = MetStiffness::default();
         self.limit = self.options.limit.map(WorkLimit::begin);
     }

@@ -192,41 +192,50 @@ impl Session {
         output: Output,
         watch: &mut dyn Watch,
     ) -> Result<Status, Error> {
-        let Some(limit) = self.limit else {
-            return self.simulate_within(analysis, end, output, watch);
+        let outcome = match self.limit {
+            Some(limit) => {
+                let mut limited = Limited::new(watch, limit);
+                self.simulate_within(analysis, end, output, &mut limited)
+            }
+            None => self.simulate_within(analysis, end, output, watch),
         };
-        let mut limited = Limited::new(watch, limit);
-        let outcome = self.simulate_within(analysis, end, output, &mut limited);
-        match self.used_up.take() {
-            Some(done) => Ok(self.close_set_up(analysis, done)),
+        match self.ended_early.take() {
+            Some(why) => Ok(self.close_set_up(analysis, why)),
             None => outcome,
         }
     }
 
     /// Notes that a phase of setting up is done; refuses to go on when the limit of work has been
-    /// reached.
+    /// reached, or the caller asks to stop.
     ///
     /// # Errors
-    /// The limit has been reached; [`Session::simulate_with`] makes a status of it.
-    pub(super) fn within_limit(&mut self, done: SetUp) -> Result<(), Vec<Diagnostic>> {
+    /// The reason, of which [`Session::simulate_with`] makes a status.
+    pub(super) fn may_go_on(
+        &mut self,
+        done: SetUp,
+        watch: &mut dyn Watch,
+    ) -> Result<(), Vec<Diagnostic>> {
         self.activity.set(done);
-        if !self.is_over_limit() {
+        let why = if self.is_over_limit() {
+            self.over(Reached::SetUp(done))
+        } else if watch.interrupted() {
+            StopReason::Interrupted
+        } else {
             return Ok(());
-        }
-        self.used_up = Some(done);
-        let why = self.over(Reached::SetUp(done));
-        Err(vec![Diagnostic::error(why.code(), why.to_string())])
+        };
+        let refused = Diagnostic::error(why.code(), why.to_string());
+        self.ended_early = Some(why);
+        Err(vec![refused])
     }
 
     /// Adds a simulation to the record that ended before it began.
-    fn close_set_up(&mut self, analysis: Analysis, done: SetUp) -> Status {
+    fn close_set_up(&mut self, analysis: Analysis, why: StopReason) -> Status {
         let kind = match analysis {
             Analysis::Kinematic => Kind::Kinematic,
             Analysis::Dynamic | Analysis::Transient => Kind::Dynamic,
             Analysis::Static => Kind::Static,
             Analysis::InitialConditions => Kind::InitialConditions,
         };
-        let why = self.over(Reached::SetUp(done));
         self.close(results::Simulation::new(kind, self.time()), Some(why))
     }
 

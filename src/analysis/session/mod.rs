@@ -41,11 +41,12 @@ use crate::analysis::linear::{self, Linearization};
 use crate::analysis::session::columns::Columns;
 use crate::analysis::system::{System, closures};
 use crate::analysis::time::output::Output;
-use crate::analysis::watch::Watch;
+use crate::analysis::warning::AssemblyWarning;
+use crate::analysis::watch::{Unwatched, Watch};
 use crate::analysis::work_limit::WorkLimit;
 use crate::diagnostic::Error;
 use crate::expr::program::Program;
-use crate::model::{ElementKind, Model};
+use crate::model::{ElementId, ElementKind, Model};
 use crate::results::{Event, Run, Status};
 use crate::scene::contacts::Shell;
 use crate::scene::equations::Unsupported;
@@ -53,7 +54,6 @@ use carried::Carried;
 use companion::{Integrated, Pace};
 use kept::{Kept, Starts};
 pub use limit::Activity;
-use limit::SetUp;
 use outcome::units;
 use rows::Gaps;
 pub use rows::Receiver;
@@ -62,6 +62,7 @@ use states::Stretch;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use stiffness::MetStiffness;
+use stop_reason::StopReason;
 
 /// The kind of a simulation, as SIMULATE asks for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -156,9 +157,14 @@ pub struct Session {
     gaps: Gaps,
     /// takes rows while simulations go on
     receiver: Option<Receiver>,
-    /// the processor time that may be used, and what was going on when it had been
+    /// the processor time that may be used
     limit: Option<WorkLimit>,
-    used_up: Option<SetUp>,
+    /// why the set-up of a simulation was ended
+    ended_early: Option<StopReason>,
+    /// what the present simulation does to the parts as the one before has left them
+    leap: Option<AssemblyWarning>,
+    /// parts whose leaps have been told
+    leapt: BTreeSet<ElementId>,
     activity: Activity,
     shells: Option<Arc<BTreeMap<u32, Result<Shell, String>>>>,
     /// the same at another request, where bars of error are wanted
@@ -217,7 +223,9 @@ impl Session {
             gaps: Gaps::default(),
             receiver: None,
             limit,
-            used_up: None,
+            ended_early: None,
+            leap: None,
+            leapt: BTreeSet::new(),
             activity: Activity::default(),
             shells: None,
             companion: None,
@@ -311,7 +319,7 @@ impl Session {
     /// Mistakes in the model, and functions without derivatives.
     pub fn linearize(&mut self, wanted: &linear::Wanted) -> Result<Linearization, Error> {
         let inputs = linear::inputs(&self.model, wanted).map_err(Error::from)?;
-        let (mut system, assembly) = self.prepare(LINEAR, &inputs)?;
+        let (mut system, assembly) = self.prepare(LINEAR, &inputs, &mut Unwatched)?;
         self.first_facts(&system, &assembly);
         let found = linear::linearize(&mut system, &self.model, wanted)?;
         for line in found.table().lines() {

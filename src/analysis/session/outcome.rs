@@ -4,12 +4,13 @@
 use super::Session;
 use super::stop_reason::{Cause, StopReason};
 use crate::analysis::start::alignment;
-use crate::analysis::start::assemble::Assembly;
+use crate::analysis::start::assemble::{Assembly, Redundant};
 use crate::analysis::system::System;
 use crate::analysis::time::{ranks, valueless};
 use crate::analysis::trajectory::{Ended, EnergyFlow, Limited, Trajectory};
 use crate::analysis::verify::culprit;
 use crate::analysis::warning::{RunWarning, Warning};
+use crate::diagnostic::Subject;
 use crate::model::Model;
 use crate::numeric::{Reason, Stop};
 use crate::results::{self, Counts, Event, RowChange, Status};
@@ -116,7 +117,13 @@ impl Session {
 
     /// Freedom and redundancy, told once and whenever they change.
     pub(super) fn first_facts(&mut self, system: &System, assembly: &Assembly) {
-        let names: Vec<String> = assembly.redundant.iter().map(|r| r.name.clone()).collect();
+        let name = |r: &Redundant| {
+            let row = &system.scene.rows[r.row];
+            let element = self.model.element(row.element);
+            let name = element.and_then(|e| e.place().name.as_deref());
+            Subject::part_of(row.element, row.equation.as_str()).named(name)
+        };
+        let names: Vec<String> = assembly.redundant.iter().map(name).collect();
         if self.run.record.redundant != names && !names.is_empty() {
             let rows = &system.scene.rows;
             let equations = assembly

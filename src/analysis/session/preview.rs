@@ -5,6 +5,7 @@ use super::{Analysis, Session};
 use crate::analysis::time::valueless::{self, Loss};
 use crate::analysis::verify::driving::driving;
 use crate::analysis::warning::{AssemblyWarning, Warning};
+use crate::analysis::watch::Unwatched;
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::{ElementId, ElementKind, Family, Model};
 
@@ -68,7 +69,7 @@ impl Session {
     ) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
         self.check_method()?;
         self.check_settings()?;
-        let (system, assembly, analysis) = self.begin(analysis)?;
+        let (system, assembly, analysis) = self.begin(analysis, &mut Unwatched)?;
         let (told, length) = (assembly.warnings.iter(), system.scene.length);
         for warning in told.filter(|w| !is_rounding(w, length)) {
             self.warn(warning.clone());

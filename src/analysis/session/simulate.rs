@@ -85,7 +85,7 @@ impl Session {
             return Err(wrong.into());
         }
         // the system in its state, and which analysis moves it
-        let (mut system, assembly, analysis) = self.begin(analysis)?;
+        let (mut system, assembly, analysis) = self.begin(analysis, watch)?;
         self.check_masses(&system, analysis)?;
         self.check_drives(&system, analysis, end)?;
         // what is told before it moves
@@ -94,7 +94,7 @@ impl Session {
         let phase = Phase::begin();
         let program = self.columns_program(&system)?;
         phase.end(&mut self.run.record.seconds, |s| &mut s.record);
-        self.within_limit(SetUp::Columns)?;
+        self.may_go_on(SetUp::Columns, watch)?;
         if self.carried.is_none() || analysis == Analysis::InitialConditions {
             self.show_start(&system, &assembly, &program);
         }
@@ -130,6 +130,7 @@ impl Session {
     pub(super) fn begin(
         &mut self,
         asked: Analysis,
+        watch: &mut dyn Watch,
     ) -> Result<(System, Assembly, Analysis), Vec<Diagnostic>> {
         let mode = match asked {
             Analysis::Kinematic => KINEMATIC,
@@ -138,18 +139,18 @@ impl Session {
             Analysis::Dynamic | Analysis::Transient => DYNAMIC,
         };
         let (system, assembly, analysis) = match mode {
-            DYNAMIC => match self.prepare_dynamics()? {
+            DYNAMIC => match self.prepare_dynamics(watch)? {
                 Prepared::Moves(system, assembly) => (*system, assembly, Analysis::Dynamic),
                 Prepared::Still(scene, assembly) => {
                     if asked == Analysis::Dynamic {
                         self.warn_of_no_freedom(&scene);
                     }
-                    let (system, _) = self.prepare(KINEMATIC, &[])?;
+                    let (system, _) = self.prepare(KINEMATIC, &[], watch)?;
                     (system, assembly, Analysis::Kinematic)
                 }
             },
             _ => {
-                let (system, assembly) = self.prepare(mode, &[])?;
+                let (system, assembly) = self.prepare(mode, &[], watch)?;
                 if asked == Analysis::Kinematic && assembly.freedom > 0 {
                     return Err(vec![has_freedom(assembly.freedom)]);
                 }
@@ -231,6 +232,11 @@ impl Session {
         }
         for found in &system.scene.warnings {
             self.warn(Warning::Scene(found.clone()));
+        }
+        let leap = self.leap.take();
+        let leap = leap.filter(|leap| leap.leaps().is_none_or(|part| self.leapt.insert(part)));
+        if let Some(leap) = leap {
+            self.warn(Warning::Assembly(leap));
         }
     }
 

@@ -1,7 +1,7 @@
 //! The start of a simulation: the model compiled as it is now, in the state that the last
 //! simulation left or that is assembled.
 
-use super::carried::{has_new_unknowns, moved};
+use super::carried::{Carried, has_new_unknowns, moved};
 use super::kept::Prepared;
 use super::limit::SetUp;
 use super::phase::Phase;
@@ -11,15 +11,17 @@ use super::state_at_start::Start;
 use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::start::{
-    coincident, embedded, initial_conditions, misalignment, placement, velocities,
+    coincident, embedded, initial_conditions, leap, misalignment, placement, velocities,
 };
 use crate::analysis::system::external_inputs::ExternalInputs;
 use crate::analysis::system::{System, complaints};
 use crate::analysis::system::{closures, samples};
 use crate::analysis::verify::culprit::blamed;
-use crate::analysis::warning::Warning;
+use crate::analysis::warning::{AssemblyWarning, Warning};
+use crate::analysis::watch::Watch;
 use crate::diagnostic::{Diagnostic, Error};
 use crate::model::Model;
+use crate::numeric::Ode;
 use crate::scene::Scene;
 use crate::scene::build;
 use crate::scene::configuration::Configured;
@@ -40,26 +42,30 @@ impl Session {
         &mut self,
         mode: u32,
         inputs: &[u32],
+        watch: &mut dyn Watch,
     ) -> Result<(System, Assembly), Vec<Diagnostic>> {
         if let Some(before) = self.before(mode, inputs) {
             return Ok(before);
         }
-        let (start, v, assembly) = self.assembled(mode, inputs)?;
-        let system = self.recorded((start, v), &assembly, inputs)?;
+        let (start, v, assembly) = self.assembled(mode, inputs, watch)?;
+        let system = self.recorded((start, v), &assembly, inputs, watch)?;
         Ok((system, assembly))
     }
 
     /// Brings the model for dynamics into its state; without freedom, nothing is recorded.
-    pub(super) fn prepare_dynamics(&mut self) -> Result<Prepared, Vec<Diagnostic>> {
+    pub(super) fn prepare_dynamics(
+        &mut self,
+        watch: &mut dyn Watch,
+    ) -> Result<Prepared, Vec<Diagnostic>> {
         if let Some((system, assembly)) = self.before(DYNAMIC, &[]) {
             return Ok(Prepared::Moves(Box::new(system), assembly));
         }
         if let Some((scene, assembly)) = self.still_before() {
             return Ok(Prepared::Still(scene, assembly));
         }
-        let (start, v, assembly) = self.assembled(DYNAMIC, &[])?;
+        let (start, v, assembly) = self.assembled(DYNAMIC, &[], watch)?;
         if assembly.freedom > 0 {
-            let system = self.recorded((start, v), &assembly, &[])?;
+            let system = self.recorded((start, v), &assembly, &[], watch)?;
             return Ok(Prepared::Moves(Box::new(system), assembly));
         }
         self.keep_still(&start.scene, &assembly);
@@ -71,15 +77,16 @@ impl Session {
         &mut self,
         mode: u32,
         inputs: &[u32],
+        watch: &mut dyn Watch,
     ) -> Result<(Start, Vec<f64>, Assembly), Vec<Diagnostic>> {
         self.columns_program = None;
         self.model.checked()?;
         self.check_closures()?;
-        self.within_limit(SetUp::Reading)?;
+        self.may_go_on(SetUp::Reading, watch)?;
         let phase = Phase::begin();
         let (scene, moved) = self.compile(mode, inputs)?;
         phase.end(&mut self.run.record.seconds, |s| &mut s.compile);
-        self.within_limit(SetUp::Compiling)?;
+        self.may_go_on(SetUp::Compiling, watch)?;
         let phase = Phase::begin();
         let mut start = Start::new(scene, mode, self.time());
         let first = self.carried.is_none();
@@ -88,7 +95,7 @@ impl Session {
         } else {
             self.go_on(&mut start)?
         };
-        self.within_limit(SetUp::Assembling)?;
+        self.may_go_on(SetUp::Assembling, watch)?;
         (start.configuration).begin_states(&start.scene, &mut start.x);
         start.begin_turns(self.carried.as_ref());
         let v = self.velocities(&mut start, moved.as_ref())?;
@@ -100,7 +107,7 @@ impl Session {
                 .extend(unmet.into_iter().map(Warning::from));
         }
         phase.end(&mut self.run.record.seconds, |s| &mut s.assemble);
-        self.within_limit(SetUp::Velocities)?;
+        self.may_go_on(SetUp::Velocities, watch)?;
         Ok((start, v, assembly))
     }
 
@@ -110,17 +117,19 @@ impl Session {
         (start, v): (Start, Vec<f64>),
         assembly: &Assembly,
         inputs: &[u32],
+        watch: &mut dyn Watch,
     ) -> Result<System, Vec<Diagnostic>> {
         let mode = start.mode;
         let phase = Phase::begin();
         let mut system = self.system(start, v)?;
+        self.leap = self.leap_of(&mut system, mode);
         let is_kept = self.carried.is_none() && self.options.keep_start && inputs.is_empty();
         if is_kept && mode == DYNAMIC {
             // every run watches it
             system.prepare_energy();
         }
         phase.end(&mut self.run.record.seconds, |s| &mut s.record);
-        self.within_limit(SetUp::Recording)?;
+        self.may_go_on(SetUp::Recording, watch)?;
         if is_kept {
             let start = self.kept_start(mode, &system, assembly);
             self.starts.systems.insert(mode, start);
@@ -174,6 +183,7 @@ impl Session {
     fn go_on(&self, start: &mut Start) -> Result<Assembly, Vec<Diagnostic>> {
         if let Some(carried) = &self.carried {
             start.take_over(carried);
+            self.begin_motions(start, carried);
         }
         start.configuration.external = self.external(start.here(), start.t, &start.q, &start.x)?;
         start.positions()
@@ -249,6 +259,24 @@ impl Session {
         let mut system = System::with_hooks(start.scene, start.configuration, &self.hooks)?;
         self.put(&mut system, (t, &y), mode)?;
         Ok(system)
+    }
+
+    /// Returns what a system that goes on does to the parts as the last simulation left them.
+    fn leap_of(&self, system: &mut System, mode: u32) -> Option<AssemblyWarning> {
+        let carried = self.carried.as_ref()?;
+        let moves = !carried.at_rest && matches!(mode, DYNAMIC | KINEMATIC);
+        let y = system.scene.layout.y();
+        let (t, mut numbers) = (carried.t, system.numbers.clone());
+        if moves && !system.scene.rows.is_empty() {
+            // velocities are put onto rows by the first step
+            let mut state = numbers[y.clone()].to_vec();
+            let done = system.aside(|system| Ode::project(system, t, &mut state));
+            system.numbers.copy_from_slice(&numbers);
+            if done.is_ok() {
+                numbers[y].copy_from_slice(&state);
+            }
+        }
+        leap::of_parts(system.configured(), &carried.parts, &numbers, moves)
     }
 
     /// Brings a system into a state: its past, the numbers that follow, and what sensors see.
@@ -348,6 +376,32 @@ impl Session {
 
     /// Puts in the start of a motion given by its rate: ICDISP and ICVEL, else the displacement of
     /// the dataset's configuration and the joint's IC; rows begin in the assembled configuration.
+    /// Lets motions whose states are new begin: where they are told to, else where their
+    /// coordinates are.
+    fn begin_motions(&self, start: &mut Start, carried: &Carried) {
+        let scene = &start.scene;
+        for (m, motion) in scene.motions.iter().enumerate() {
+            let is_new = |&state: &usize| !carried.unknowns.contains(&scene.unknowns.x[state]);
+            let Some(state) = motion.state.filter(is_new) else {
+                continue;
+            };
+            self.initial_motion(scene, m, &mut start.x);
+            let (Some(data), Some(c)) = (self.model.motions.get(&motion.id), motion.coordinate)
+            else {
+                continue;
+            };
+            let Some(&[value, rate]) = carried.coordinates.get(&scene.coordinates[c].id) else {
+                continue;
+            };
+            if data.ic_displacement.is_none() {
+                start.x[state] = value;
+            }
+            if motion.level == crate::model::Level::Acceleration && data.ic_velocity.is_none() {
+                start.x[state + 1] = rate;
+            }
+        }
+    }
+
     fn initial_motion(&self, scene: &Scene, m: usize, x: &mut [f64]) {
         let Some(state) = scene.motions[m].state else {
             return;

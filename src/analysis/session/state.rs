@@ -12,7 +12,8 @@ use crate::dataset;
 use crate::diagnostic::{Diagnostic, Error, Severity};
 use crate::model::{ElementId, ElementKind, Model};
 use crate::scene::history::{AngleId, DelayId};
-use crate::scene::unknown::{MotionState, UnknownId};
+use crate::scene::layout::Layout;
+use crate::scene::unknown::{CoordinateId, MotionState, UnknownId};
 use crate::space::{MarkerState, Mat3, Vec3};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -240,6 +241,7 @@ fn carried(v: &Value) -> Option<Carried> {
     let past = v["past"].as_array()?.iter().map(past);
     Some(Carried {
         t: as_number(&v["time"])?,
+        coordinates: free_coordinates(&unknowns, &all),
         numbers: all,
         unknowns,
         at_rest: v["at_rest"].as_bool()?,
@@ -250,6 +252,24 @@ fn carried(v: &Value) -> Option<Carried> {
         past: past.collect::<Option<_>>()?,
         guesses: BTreeMap::new(),
     })
+}
+
+/// Returns value and rate of the coordinates that are unknowns. `numbers`: the time, then theirs.
+fn free_coordinates(unknowns: &[UnknownId], numbers: &[f64]) -> BTreeMap<CoordinateId, [f64; 2]> {
+    let mut all: BTreeMap<CoordinateId, [f64; 2]> = BTreeMap::new();
+    for (unknown, &value) in unknowns.iter().zip(numbers.iter().skip(Layout::STATE)) {
+        match *unknown {
+            UnknownId::Position(id) => all.entry(id).or_default()[0] = value,
+            UnknownId::Velocity(id) => {
+                all.entry(id).and_modify(|both| both[1] = value);
+            }
+            UnknownId::EulerParameter { .. }
+            | UnknownId::Motion { .. }
+            | UnknownId::Differential(_)
+            | UnknownId::ContactPlace { .. } => {}
+        }
+    }
+    all
 }
 
 /// Reads the angles with their turns. They once were a list without names, which is of use only

@@ -8,6 +8,7 @@ pub(super) mod coincident;
 pub mod dataset;
 pub(super) mod embedded;
 pub(super) mod initial_conditions;
+pub mod leap;
 pub mod misalignment;
 pub mod nearby;
 pub mod placement;

@@ -49,6 +49,8 @@ const LEAST_STRESS: f64 = 1e-7;
 pub struct Dependent {
     /// "JOINT/4 Zi.Xj"
     pub row: String,
+    /// its equation alone: "Zi.Xj"
+    pub equation: String,
     /// the constraint whose row it is
     pub element: ElementId,
     /// the motion it forbids
@@ -440,6 +442,7 @@ fn explain(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, found: &
         let row = &scene.rows[d.row];
         found.dependent.push(Dependent {
             row: d.name.clone(),
+            equation: row.equation.clone(),
             element: row.element,
             direction: Direction::of_row(&scene, &at, d.row),
             fixed_by,

@@ -79,6 +79,28 @@ pub enum AssemblyWarning {
         /// unit of lengths
         unit: String,
     },
+    /// a part is not where the simulation before has left it
+    Moved {
+        /// the part that is farthest
+        element: ElementId,
+        /// its distance, zero where that is too small to be told
+        offset: f64,
+        /// its turn, in rad, likewise
+        turn: f64,
+        /// unit of the distance
+        unit: String,
+    },
+    /// a part does not move as the simulation before has left it
+    Struck {
+        /// the part whose velocity has changed most
+        element: ElementId,
+        /// change of its velocity, zero where that is too small to be told
+        speed: f64,
+        /// change of its angular velocity, in rad per time, likewise
+        spin: f64,
+        /// unit of length
+        unit: String,
+    },
     /// displacements do not sum up to zero where they are assembled
     HeldSum {
         /// the COUPLER or GEAR
@@ -104,6 +126,24 @@ impl AssemblyWarning {
         off.join(" and ")
     }
 
+    /// Returns the part that it says to leap between two simulations.
+    pub(in crate::analysis) fn leaps(&self) -> Option<ElementId> {
+        match *self {
+            AssemblyWarning::Moved { element, .. } | AssemblyWarning::Struck { element, .. } => {
+                Some(element)
+            }
+            AssemblyWarning::Misaligned { .. }
+            | AssemblyWarning::Axes(_)
+            | AssemblyWarning::Turned { .. }
+            | AssemblyWarning::WrongWayRound { .. }
+            | AssemblyWarning::OppositeAngle { .. }
+            | AssemblyWarning::Coincident { .. }
+            | AssemblyWarning::Embedded { .. }
+            | AssemblyWarning::LeftOut { .. }
+            | AssemblyWarning::HeldSum { .. } => None,
+        }
+    }
+
     /// Returns its stable short name.
     pub(super) fn code(&self) -> &'static str {
         match self {
@@ -116,6 +156,7 @@ impl AssemblyWarning {
             AssemblyWarning::Coincident { .. } => "coincident",
             AssemblyWarning::Embedded { .. } => "embedded",
             AssemblyWarning::LeftOut { .. } => "redundant",
+            AssemblyWarning::Moved { .. } | AssemblyWarning::Struck { .. } => "leap",
             AssemblyWarning::HeldSum { .. } => "held_sum",
         }
     }
@@ -138,6 +179,8 @@ impl AssemblyWarning {
             | AssemblyWarning::Coincident { element, .. }
             | AssemblyWarning::Embedded { element, .. }
             | AssemblyWarning::LeftOut { element, .. }
+            | AssemblyWarning::Moved { element, .. }
+            | AssemblyWarning::Struck { element, .. }
             | AssemblyWarning::HeldSum { element, .. } => element,
         }
     }
@@ -151,7 +194,7 @@ impl AssemblyWarning {
                 let off = Self::apart(offset, unit, turn);
                 format!(": in the dataset its markers are off by {off}; assembly moves the parts")
             }
-            AssemblyWarning::Axes(found) => format!(": {found}"),
+            AssemblyWarning::Axes(found) => format!(": {}", found.rest(&|id| names.of(id))),
             AssemblyWarning::Turned { parts } => turned(parts, names),
             AssemblyWarning::WrongWayRound {
                 markers: [i, j],
@@ -193,6 +236,32 @@ impl AssemblyWarning {
                 format!(
                     ": {equation} is redundant but for a misalignment of {off}, and is left out \
                      (IC/ERROR permits {limit})"
+                )
+            }
+            AssemblyWarning::Moved {
+                offset, turn, unit, ..
+            } => {
+                let moved = (*offset > 0.0).then(|| format!("moved by {}", length(*offset, unit)));
+                let turned =
+                    (*turn > 0.0).then(|| format!("turned by {} deg", short(turn.to_degrees())));
+                let leap: Vec<String> = moved.into_iter().chain(turned).collect();
+                format!(
+                    " is {} between two simulations, to where what was switched on or changed \
+                     there holds; such leaps are told once for a part",
+                    leap.join(" and ")
+                )
+            }
+            AssemblyWarning::Struck {
+                speed, spin, unit, ..
+            } => {
+                let speed = (*speed > 0.0).then(|| length(*speed, unit));
+                let spin = (*spin > 0.0).then(|| format!("{} rad", short(*spin)));
+                let rates: Vec<String> = speed.into_iter().chain(spin).collect();
+                format!(
+                    ": its velocity changes by {} per unit of time between two simulations, as by \
+                     a blow: what was switched on or changed there holds at once; such leaps are \
+                     told once for a part",
+                    rates.join(" and ")
                 )
             }
             AssemblyWarning::HeldSum { sum, .. } => format!(

@@ -79,7 +79,7 @@ fn redundant(all: &[Dependent], called: Called<'_>) -> Vec<String> {
         (&a.element, &a.fixed_by, a.only_here) == (&b.element, &b.fixed_by, b.only_here)
     });
     let sentence = |(first, group): &(&Dependent, Vec<&Dependent>)| {
-        let rows: Vec<&str> = group.iter().map(|d| d.row.as_str()).collect();
+        let rows: Vec<&str> = group.iter().map(|d| d.equation.as_str()).collect();
         let words = first.sentence_of(group, called);
         format!("redundant: {words} ({})", rows.join(", "))
     };

@@ -149,6 +149,16 @@ be, or give EXACT coordinates.
     PART/3, QG=50,0,0, EXACT=X:Y:PSI, …",
     },
     Code {
+        name: "leap",
+        summary: "a part is not where the simulation before has left it, or moves otherwise",
+        explanation: "\
+A command has switched a constraint on, or given a motion another function, that does not hold where the parts are. It holds at once:
+parts are put onto it, and velocities change as by a blow, whose force and work no result shows. Let functions begin where the motion
+is, and switch joints on where their markers meet.
+
+    MOTION/3, VELOCITY, FUNCTION=…        goes on from where its joint is, if there is no ICDISP",
+    },
+    Code {
         name: "held_sum",
         summary: "the displacements of a COUPLER or GEAR do not sum up to zero where they are assembled",
         explanation: "\

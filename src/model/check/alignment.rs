@@ -10,7 +10,6 @@ use crate::model::geometry::marker_frame;
 use crate::physics::joint::{JointKind, Relation, Tie};
 use crate::space::{Frame, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::fmt;
 
 /// Angle that is told, in rad: a degree.
 const TOLD: f64 = PI / 180.0;
@@ -100,56 +99,47 @@ impl Misalignment {
     }
 }
 
-/// Writes it without the name of the element.
-impl fmt::Display for Misalignment {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [i, j] = self.markers.map(|m| ElementKind::Marker.id(m));
+impl Misalignment {
+    /// Returns the sentence after the element; `called` names others.
+    pub fn rest(&self, called: &dyn Fn(ElementId) -> String) -> String {
+        let [i, j] = self.markers.map(|m| called(ElementKind::Marker.id(m)));
         let degrees = |angle: f64| {
             let rounded = (angle.to_degrees() * 100.0).round() / 100.0;
             format!("{rounded} deg")
         };
         let apart = degrees(self.angle);
         match self.needed {
-            Needed::UniversalPins => write!(
-                f,
+            Needed::UniversalPins => format!(
                 "its pins, z of {i} and z of {j}, are {apart} apart and should cross at 90 deg"
             ),
-            Needed::HookePins => write!(
-                f,
+            Needed::HookePins => format!(
                 "its pins, x of {i} and y of {j}, are {apart} apart and should cross at 90 deg"
             ),
-            Needed::Rack => write!(
-                f,
+            Needed::Rack => format!(
                 "x of {j} (the rack) is {apart} off the axis of the pinion, z of {i}, and should lie along it"
             ),
-            Needed::Pinion { joint } => write!(
-                f,
+            Needed::Pinion { joint } => format!(
                 "z of {i}, the axis of the pinion, is {apart} off the axis of {}, about which it turns",
-                ElementKind::Joint.id(joint)
+                called(ElementKind::Joint.id(joint))
             ),
-            Needed::Exchanged { joint } => write!(
-                f,
+            Needed::Exchanged { joint } => format!(
                 "the rack is given as I: the part of J, not that of I, turns, about {}; \
                  z of {i} is {apart} off that axis",
-                ElementKind::Joint.id(joint)
+                called(ElementKind::Joint.id(joint))
             ),
-            Needed::Thread => write!(
-                f,
-                "the z axes of {i} and {j} are {apart} apart: its thread needs one axis"
-            ),
-            Needed::PitchPoint { joint } => write!(
-                f,
+            Needed::Thread => {
+                format!("the z axes of {i} and {j} are {apart} apart: its thread needs one axis")
+            }
+            Needed::PitchPoint { joint } => format!(
                 "z of {i} (CV) is {apart} off the way in which {} moves its body there, square to {j}",
-                ElementKind::Joint.id(joint)
+                called(ElementKind::Joint.id(joint))
             ),
-            Needed::TorsionSpring => write!(
-                f,
+            Needed::TorsionSpring => format!(
                 "the z axes of {i} and {j} are {apart} apart: its angle is read about z of {j}, and is not that of a rotation"
             ),
-            Needed::Torque => write!(
-                f,
-                "the z axes of {i} and {j} are {apart} apart: its torque is about z of {j}"
-            ),
+            Needed::Torque => {
+                format!("the z axes of {i} and {j} are {apart} apart: its torque is about z of {j}")
+            }
         }
     }
 }
@@ -165,10 +155,11 @@ pub(super) fn axes_are_aligned(model: &Model, out: &mut Out) {
             continue;
         };
         let who = (found.element, element.place());
+        let said = found.rest(&|id| model.called(id));
         if found.is_contradiction() {
-            error(out, "axes_not_aligned", who, found.to_string());
+            error(out, "axes_not_aligned", who, said);
         } else {
-            warn(out, "axes_not_aligned", who, found.to_string());
+            warn(out, "axes_not_aligned", who, said);
         }
         advise(out, found.advice());
     }

@@ -15,7 +15,7 @@ pub(super) fn one_ground(model: &Model, out: &mut Out) {
         );
     }
     for &(&id, part) in grounds.iter().skip(1) {
-        let first = ElementKind::Part.id(*grounds[0].0);
+        let first = model.called(ElementKind::Part.id(*grounds[0].0));
         let message = format!("a second ground; {first} is GROUND already");
         error(
             out,

@@ -12,7 +12,7 @@ pub(super) fn constraints_join_two_parts(model: &Model, out: &mut Out) {
             continue;
         };
         let who = (id, element.place());
-        let both = format!("both its markers belong to {body}");
+        let both = format!("both its markers belong to {}", model.called(body));
         if id.kind.family() == Family::Constraint {
             error(
                 out,

@@ -32,7 +32,7 @@ pub(super) fn joints_stand_once(model: &Model, out: &mut Out) {
             *kind == joint.kind && *between == bodies && same(&at, there)
         });
         if let Some(first) = alike {
-            let first = ElementKind::Joint.id(first.0);
+            let first = model.called(ElementKind::Joint.id(first.0));
             let message =
                 format!("{first} is the same joint between the same parts at the same place");
             let who = (ElementKind::Joint.id(id), &joint.place);

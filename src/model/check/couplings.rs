@@ -82,7 +82,7 @@ pub(super) fn gears_share_a_carrier(model: &Model, out: &mut Out) {
                 who,
                 format!(
                     "{} stands twice in JOINTS",
-                    ElementKind::Joint.id(g.joints[0])
+                    model.called(ElementKind::Joint.id(g.joints[0]))
                 ),
             );
         }
@@ -91,7 +91,7 @@ pub(super) fn gears_share_a_carrier(model: &Model, out: &mut Out) {
             let Some(joint) = model.joints.get(&n) else {
                 continue;
             };
-            let id = ElementKind::Joint.id(n);
+            let id = model.called(ElementKind::Joint.id(n));
             if joint.kind.displacements() == Displacements::None {
                 let message = format!("{id} is {}: it cannot be geared", joint.kind.keyword());
                 error(out, "wrong_joint", who, message);
@@ -99,8 +99,8 @@ pub(super) fn gears_share_a_carrier(model: &Model, out: &mut Out) {
             let of_j = model.body_of(joint.j);
             if carrier.is_some() && of_j.is_some() && carrier != of_j {
                 let message = format!(
-                    "the J marker of {id} and the CV marker {} belong to different parts",
-                    g.cv
+                    "the J marker of {id} and the CV marker, {}, belong to different parts",
+                    model.called(ElementKind::Marker.id(g.cv))
                 );
                 error(out, "no_common_carrier", who, message);
                 advise(

@@ -68,7 +68,7 @@ pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
         if let Some(kind) = kind.filter(|k| k.row().friction.is_none()) {
             let message = format!(
                 "{} is {}: there is no friction law for it",
-                ElementKind::Joint.id(f.joint),
+                model.called(ElementKind::Joint.id(f.joint)),
                 kind.keyword()
             );
             error(

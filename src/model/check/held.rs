@@ -130,7 +130,7 @@ pub(super) fn torques_have_an_axis(model: &Model, out: &mut Out) {
         let holds = matches!(joint.kind, JointKind::Fixed | JointKind::Translational);
         let ends = [model.body_of(joint.i), model.body_of(joint.j)];
         if let ([Some(a), Some(b)], true) = (ends, holds) {
-            turnless.insert([a.min(b), a.max(b)], ElementKind::Joint.id(id));
+            turnless.insert([a.min(b), a.max(b)], id);
         }
     }
     for (id, element) in model.elements() {
@@ -153,6 +153,8 @@ pub(super) fn torques_have_an_axis(model: &Model, out: &mut Out) {
         };
         let pair = [a.min(b), a.max(b)];
         if let Some(joint) = turnless.get(&pair) {
+            let joint = model.called(ElementKind::Joint.id(*joint));
+            let [a, b] = [a, b].map(|body| model.called(body));
             let message = format!(
                 "it turns nothing: {joint} keeps {a} and {b} from turning against each other"
             );
@@ -167,7 +169,9 @@ pub(super) fn torques_have_an_axis(model: &Model, out: &mut Out) {
             continue;
         }
         let message = format!(
-            "it turns {a} against {b} about z of {}, but no joint between the two has such an axis: one may be missing",
+            "it turns {} against {} about z of {}, but no joint between the two has such an axis: one may be missing",
+            model.called(a),
+            model.called(b),
             model.called(ElementKind::Marker.id(j))
         );
         warn(out, "forgotten_joint", (id, place), message);

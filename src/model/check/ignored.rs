@@ -144,7 +144,8 @@ fn frictions(model: &Model, out: &mut Out) {
             ),
         ];
         let given = given.map(|(name, given, read)| (name, given && !read));
-        let why = format!("{} is {}", ElementKind::Joint.id(f.joint), kind.keyword());
+        let joint = model.called(ElementKind::Joint.id(f.joint));
+        let why = format!("{joint} is {}", kind.keyword());
         not_read(out, (ElementKind::Friction.id(id), &f.place), &given, &why);
     }
 }

@@ -388,7 +388,8 @@ impl<S: Scalar> Equations<'_, S> {
         out
     }
 
-    pub(super) fn coordinate(&self, c: usize) -> Jet<S> {
+    /// Returns a coordinate of the forest, which is no ball's, with its rate.
+    pub fn coordinate(&self, c: usize) -> Jet<S> {
         self.coordinates(&[]).of(self.scene.coordinates[c].source)
     }
 
