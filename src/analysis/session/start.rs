@@ -276,7 +276,12 @@ impl Session {
                 numbers[y].copy_from_slice(&state);
             }
         }
-        leap::of_parts(system.configured(), &carried.parts, &numbers, moves)
+        leap::of_parts(
+            system.configured(),
+            &carried.parts,
+            &numbers,
+            moves.then_some(t),
+        )
     }
 
     /// Brings a system into a state: its past, the numbers that follow, and what sensors see.

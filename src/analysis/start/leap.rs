@@ -13,14 +13,17 @@ use std::collections::BTreeMap;
 const TOLD_PLACE: f64 = 1e-4;
 /// Change of a velocity over the largest there is that is told.
 const TOLD_RATE: f64 = 1e-3;
+/// Way, over the size of the mechanism or in rad, that a change of velocity makes in the time since
+/// the beginning and that is told: what is at rest moves by rounding.
+const TOLD_WAY: f64 = 1e-9;
 
 /// Finds the part that is farthest from where a simulation left it; where none is, the one whose
-/// velocity has changed most, if velocities go on (`moves`).
+/// velocity has changed most, if velocities go on, for so long (`lasted`) since the beginning.
 pub fn of_parts(
     scene: Configured<'_>,
     left: &[(ElementId, MarkerState<f64>)],
     numbers: &[f64],
-    moves: bool,
+    lasted: Option<f64>,
 ) -> Option<AssemblyWarning> {
     let at = Equations::new(scene, numbers);
     let left: BTreeMap<ElementId, &MarkerState<f64>> =
@@ -63,7 +66,8 @@ pub fn of_parts(
             rate = (by, Some(struck));
         }
     }
-    let struck = rate.1.filter(|_| moves && rate.0 > TOLD_RATE * fastest);
+    let is_told = |t: f64| rate.0 > TOLD_RATE * fastest && rate.0 * t > TOLD_WAY;
+    let struck = rate.1.filter(|_| lasted.is_some_and(is_told));
     place.1.or(struck)
 }
 

@@ -240,36 +240,40 @@ impl AssemblyWarning {
             }
             AssemblyWarning::Moved {
                 offset, turn, unit, ..
-            } => {
-                let moved = (*offset > 0.0).then(|| format!("moved by {}", length(*offset, unit)));
-                let turned =
-                    (*turn > 0.0).then(|| format!("turned by {} deg", short(turn.to_degrees())));
-                let leap: Vec<String> = moved.into_iter().chain(turned).collect();
-                format!(
-                    " is {} between two simulations, to where what was switched on or changed \
-                     there holds; such leaps are told once for a part",
-                    leap.join(" and ")
-                )
-            }
+            } => moved(*offset, *turn, unit),
             AssemblyWarning::Struck {
                 speed, spin, unit, ..
-            } => {
-                let speed = (*speed > 0.0).then(|| length(*speed, unit));
-                let spin = (*spin > 0.0).then(|| format!("{} rad", short(*spin)));
-                let rates: Vec<String> = speed.into_iter().chain(spin).collect();
-                format!(
-                    ": its velocity changes by {} per unit of time between two simulations, as by \
-                     a blow: what was switched on or changed there holds at once; such leaps are \
-                     told once for a part",
-                    rates.join(" and ")
-                )
-            }
+            } => struck(*speed, *spin, unit),
             AssemblyWarning::HeldSum { sum, .. } => format!(
                 ": its displacements sum up to {sum:.6e} where they are assembled; \
                  that sum is held, not zero"
             ),
         }
     }
+}
+
+/// Returns by how much a part is moved between two simulations.
+fn moved(offset: f64, turn: f64, unit: &str) -> String {
+    let moved = (offset > 0.0).then(|| format!("moved by {}", length(offset, unit)));
+    let turned = (turn > 0.0).then(|| format!("turned by {} deg", short(turn.to_degrees())));
+    let leap: Vec<String> = moved.into_iter().chain(turned).collect();
+    format!(
+        " is {} between two simulations, to where what was switched on or changed there holds; \
+         such leaps are told once for a part",
+        leap.join(" and ")
+    )
+}
+
+/// Returns by how much the velocity of a part changes between two simulations.
+fn struck(speed: f64, spin: f64, unit: &str) -> String {
+    let speed = (speed > 0.0).then(|| length(speed, unit));
+    let spin = (spin > 0.0).then(|| format!("{} rad", short(spin)));
+    let rates: Vec<String> = speed.into_iter().chain(spin).collect();
+    format!(
+        ": its velocity changes by {} per unit of time between two simulations, as by a blow: \
+         what was switched on or changed there holds at once; such leaps are told once for a part",
+        rates.join(" and ")
+    )
 }
 
 /// Returns which parts are turned against the dataset, and by which angle.
