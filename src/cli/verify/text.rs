@@ -187,6 +187,7 @@ mod tests {
         let fixed_by = fixed_by.iter().map(|&k| ElementKind::Joint.id(k)).collect();
         Dependent {
             row: format!("{element} Zi.Xj"),
+            equation: "Zi.Xj".into(),
             element,
             direction: Direction::Rotation(Axis::Ground(1)),
             fixed_by,
