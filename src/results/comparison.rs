@@ -131,8 +131,8 @@ pub fn compare(a: &Run, b: &Run, interpolate: bool) -> Result<Comparison, Diagno
     Ok(found)
 }
 
-/// Returns the rows of a run that are compared: those of its tables, without those of assembly where
-/// the other run has none, as those of other programs.
+/// Returns the rows of a run that are compared: those of its tables, without those of assembly
+/// where the other run has none, as those of other programs.
 fn compared_rows(run: &Run, other: &Run) -> Vec<usize> {
     let is_assembly = |kind: Option<Kind>| kind == Some(Kind::InitialConditions);
     let has_sequences = !other.sequences.is_empty();
