@@ -207,7 +207,7 @@ fn programs_recorded_together_compute_the_bits_that_each_computes_alone() {
         assert_eq!(counted, [0, 1].map(|k: usize| together[k].n_operations()));
         let alone = [
             programs::record(here, |at| programs::projection(&here, at, at.velocities())).unwrap(),
-            programs::record(here, |at| programs::rate(at)).unwrap(),
+            programs::record(here, |at| programs::rate(at).to_vec()).unwrap(),
         ];
         for (together, alone) in together.iter().zip(&alone) {
             assert_eq!(together.n_operations(), alone.n_operations());

@@ -234,7 +234,7 @@ mod tests {
             let rows = chain(n);
             let sizes: Vec<f64> = rows.iter().map(|row| norm(row)).collect();
             for preference in [1, 2, 3] {
-                let preferred = |r: usize| r % preference == 0;
+                let preferred = |r: usize| r.is_multiple_of(preference);
                 let mut dense = rows.clone();
                 let by_differences = choose(sizes.clone(), preferred, usize::MAX, |p, o, s| {
                     take_away(&mut dense, p, o, s);
