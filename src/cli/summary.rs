@@ -362,10 +362,11 @@ mod tests {
         assert_eq!(lines.len(), 2 + ROWS + 1);
         assert!(lines[0].ends_with("a rather long expression") && lines[1].ends_with("mm"));
         assert!(
-            lines[2].trim_start().starts_with("0.000") && lines[10].ends_with("-0.0001"),
+            lines[2].trim_start().starts_with("0.0") && lines[ROWS + 1].ends_with("-0.0001"),
             "{text}"
         );
-        assert_eq!(lines[11], "… 9 of 1001 rows; the files have all");
+        let told = format!("… {ROWS} of 1001 rows; the files have all");
+        assert_eq!(lines[ROWS + 2], told);
         assert_eq!(table(&Run::new("r", "t", Units::default()), 0, 80, ""), "");
     }
 

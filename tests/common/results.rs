@@ -59,7 +59,6 @@ fn comes_back(run: &Run) {
         let style = Style {
             units,
             decimal_comma,
-            ..Style::default()
         };
         let text = format::text(&mut csv::Table::new(style), run);
         let table = csv::read(text.as_bytes()).unwrap_or_else(|d| panic!("{d}\n{text}"));
