@@ -101,7 +101,7 @@ struct SetupArgs {
     /// Formats of the tables
     #[arg(long = "format", value_name = "NAME", value_delimiter = ',')]
     formats: Vec<String>,
-    /// Record only this element or kind (repeatable)
+    /// Record only this element, as JOINT/3 or by its name, or this kind, as JOINT (repeatable)
     #[arg(long, value_name = "ELEMENT", value_delimiter = ',')]
     only: Vec<String>,
     /// Record velocities and accelerations of the bodies' centres of mass

@@ -67,7 +67,7 @@ pub struct Args {
     limits: LimitArgs,
     #[command(flatten)]
     output: output::FileArgs,
-    /// Record only this element, as JOINT/3, or this kind, as JOINT (repeatable); tables show it
+    /// Record only this element, as JOINT/3 or by its name, or this kind, as JOINT (repeatable); tables show it
     #[arg(long, value_name = "ELEMENT", value_delimiter = ',')]
     only: Vec<Chosen>,
     /// Record velocities and accelerations of the bodies' centres of mass, eight each; tables show
@@ -305,7 +305,8 @@ fn remark_on_notes<'a>(found: impl Iterator<Item = &'a Diagnostic>) {
     }
 }
 
-/// Checks the columns that the command line asks for, before anything is solved or written.
+/// Checks the columns and elements that the command line asks for, before anything is solved or
+/// written.
 fn check_columns(args: &Args, model: &Model, steps: &[Step]) -> Result<(), Failure> {
     // commands may make what a column reads
     let changes = |s: &Step| matches!(s.command, Command::Change(_));
@@ -328,6 +329,12 @@ fn check_columns(args: &Args, model: &Model, steps: &[Step]) -> Result<(), Failu
         }
         failure.sources.add(place, text.clone());
     }
+    let chosen = args.only.iter().filter(|_| is_final);
+    let unknown = chosen.filter_map(|chosen| chosen.in_model(model).err());
+    failure.diagnostics.extend(unknown.map(|mut d| {
+        d.file = Some("--only".into());
+        d
+    }));
     if failure.diagnostics.is_empty() {
         Ok(())
     } else {

@@ -212,6 +212,42 @@ fn tables_show_the_elements_that_somebody_has_chosen_beside_requests() {
 }
 
 #[test]
+fn elements_are_chosen_by_their_names_and_unknown_ones_are_told_before_a_file_is_touched() {
+    let folder = scratch("chosen_by_name", "note", "").with_file_name("out");
+    let model = "examples/slider_crank.acf";
+    let run = |only: &str, folder: &str| {
+        let said = ["run", model, "--quiet", "--only", only, "--out", folder];
+        cognate(&said)
+    };
+    let table = |what: &str| {
+        let inner = folder.join(what.replace('/', "_"));
+        let done = run(what, path(&inner));
+        assert_eq!(done.code, 0, "{}", done.err);
+        std::fs::read(inner.join("slider_crank.csv")).unwrap()
+    };
+    let by_number = table("JOINT/1");
+    assert_eq!(table("crank_bearing"), by_number);
+    assert_eq!(table("1-JOINT1"), by_number);
+    for (only, said) in [
+        ("crank_bering", "did you mean crank_bearing"),
+        ("JOINT/99", "JOINT/99 does not exist"),
+    ] {
+        let told = run(only, path(&folder));
+        assert_eq!(told.code, 3, "{}", told.err);
+        assert!(told.err.contains(said), "{}", told.err);
+        assert!(!folder.join("slider_crank.csv").exists());
+    }
+    // a session of a program says the same
+    let options = Options {
+        only: vec!["JOINT/99".parse().unwrap()],
+        ..all_sets()
+    };
+    let mut session = Session::new(Model::from_text(LIFT).unwrap(), "test", options);
+    let refused = session.simulate(Analysis::Transient, 0.1, 1, &mut Unwatched);
+    assert!(refused.unwrap_err().to_string().contains("JOINT/99"));
+}
+
+#[test]
 fn many_requests_are_the_requests_of_their_elements() {
     let run = simulated(LIFT, all_sets(), 1.0);
     let same = |a: &str, b: &str| {

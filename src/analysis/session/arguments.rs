@@ -60,6 +60,20 @@ impl Session {
             .collect();
         if wrong.is_empty() { Ok(()) } else { Err(wrong) }
     }
+
+    /// Checks that the model has the elements that alone are to be recorded, before there are rows.
+    ///
+    /// # Errors
+    /// Those that it does not have, or that have no results of their own.
+    pub(super) fn check_choice(&self) -> Result<(), Vec<Diagnostic>> {
+        if self.run.rows() > 0 {
+            return Ok(());
+        }
+        let chosen = self.options.only.iter();
+        let wrong = chosen.filter_map(|chosen| chosen.in_model(&self.model).err());
+        let wrong: Vec<Diagnostic> = wrong.collect();
+        if wrong.is_empty() { Ok(()) } else { Err(wrong) }
+    }
 }
 
 /// Says that a closure computes nothing, and which names would.

@@ -190,7 +190,8 @@ const LINEAR: u32 = 7;
 
 impl Session {
     /// Begins with a model; `name` is the base name of its results.
-    pub fn new(model: Model, name: &str, options: Options) -> Self {
+    pub fn new(model: Model, name: &str, mut options: Options) -> Self {
+        options.choose_in(&model);
         let units = units(&model);
         let mut run = Run::new(name, model.title.clone(), units);
         let columns = Columns::chosen(
@@ -265,6 +266,7 @@ impl Session {
 
     /// Chooses the columns of the results, before there are any rows.
     fn choose_columns(&mut self) {
+        self.options.choose_in(&self.model);
         let names: Vec<_> = self.hooks.iter().map(closures::Hook::as_name).collect();
         let known = |id: u32, user: &crate::model::Formula| {
             let element = ElementKind::Request.id(id);

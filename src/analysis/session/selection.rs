@@ -2,6 +2,7 @@
 
 use super::Options;
 use super::sets::why_without;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::{ElementId, ElementKind, Model, SettingsStatement};
 
 /// A word of RESULTS that leaves results out.
@@ -51,31 +52,60 @@ pub enum Chosen {
     Element(ElementId),
     /// all elements of a kind, as `JOINT`
     Kind(ElementKind),
+    /// one element by another name, as the dataset gives it: see [`Chosen::in_model`]
+    Called(String),
 }
 
 impl std::str::FromStr for Chosen {
     type Err = String;
 
-    /// Reads `JOINT/3` or `JOINT`; refuses kinds without results of their own.
+    /// Reads `JOINT/3`, `JOINT`, or a name; refuses kinds without results of their own.
     fn from_str(text: &str) -> Result<Self, String> {
-        let of_kind = |kind: ElementKind| (Chosen::Kind(kind), kind);
-        let of_element = |id: ElementId| (Chosen::Element(id), id.kind);
-        let (chosen, kind) = match text.contains(['/', '-']) {
-            true => text.parse().map(of_element)?,
-            false => text.trim().parse().map(of_kind)?,
+        let text = text.trim();
+        let element = text
+            .parse()
+            .map(|id: ElementId| (Self::Element(id), id.kind));
+        let kind = || text.parse().map(|kind| (Self::Kind(kind), kind));
+        let Ok((chosen, kind)) = element.or_else(|_| kind()) else {
+            return Ok(Self::Called(text.to_owned()));
         };
-        match why_without(kind) {
-            Some(why) => Err(format!("{kind} has no results of its own: {why}")),
-            None => Ok(chosen),
-        }
+        has_results(kind).map(|()| chosen)
+    }
+}
+
+/// # Errors
+/// For kinds of elements without results of their own, with the reason.
+fn has_results(kind: ElementKind) -> Result<(), String> {
+    match why_without(kind) {
+        Some(why) => Err(format!("{kind} has no results of its own: {why}")),
+        None => Ok(()),
     }
 }
 
 impl Chosen {
+    /// Returns the choice with the element of a model in the place of its name.
+    ///
+    /// # Errors
+    /// When the model has no such element, with those that are near, or it has no results of its
+    /// own.
+    pub fn in_model(&self, model: &Model) -> Result<Self, Diagnostic> {
+        let id = match self {
+            Self::Kind(_) => return Ok(self.clone()),
+            Self::Element(id) if model.has(*id) => *id,
+            Self::Element(id) => return Err(model.no_element(*id)),
+            Self::Called(name) => model.find_element(name)?,
+        };
+        match has_results(id.kind) {
+            Ok(()) => Ok(Self::Element(id)),
+            Err(why) => Err(Diagnostic::error(Cause::UnknownElement, why)),
+        }
+    }
+
     fn has(&self, id: ElementId) -> bool {
         match *self {
             Chosen::Element(element) => element == id,
             Chosen::Kind(kind) => kind == id.kind,
+            Chosen::Called(_) => false,
         }
     }
 }
@@ -106,6 +136,15 @@ impl Selection<'_> {
 }
 
 impl Options {
+    /// Puts elements of a model in the place of their names; names that it does not have stay.
+    pub(super) fn choose_in(&mut self, model: &Model) {
+        for chosen in &mut self.only {
+            if let Ok(found) = chosen.in_model(model) {
+                *chosen = found;
+            }
+        }
+    }
+
     /// Returns the sets of results that the options ask for.
     pub(super) fn selection(&self) -> Selection<'_> {
         Selection {

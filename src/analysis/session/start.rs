@@ -82,6 +82,7 @@ impl Session {
         self.columns_program = None;
         self.model.checked()?;
         self.check_closures()?;
+        self.check_choice()?;
         self.may_go_on(SetUp::Reading, watch)?;
         let phase = Phase::begin();
         let (scene, moved) = self.compile(mode, inputs)?;
