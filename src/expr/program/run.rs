@@ -71,6 +71,7 @@ impl Program {
     }
 
     /// Returns whether both are copies of one program.
+    #[cfg(feature = "solver")]
     pub(crate) fn is_copy_of(&self, other: &Self) -> bool {
         self.id == other.id
     }
