@@ -103,7 +103,7 @@ pub unsafe extern "C" fn cognate_model_read(
     error: *mut *mut CognateError,
 ) -> *mut CognateModel {
     // SAFETY: a text and a place of the caller
-    unsafe { read_with(path, error, |path| Ok(Setup::beside(path)?)) }
+    unsafe { read_with(path, error, Setup::beside) }
 }
 
 /// Reads a dataset from a file, whatever stands beside it; NULL: it has mistakes.
