@@ -67,7 +67,8 @@ pub struct Args {
     limits: LimitArgs,
     #[command(flatten)]
     output: output::FileArgs,
-    /// Record only this element, as JOINT/3 or by its name, or this kind, as JOINT (repeatable); tables show it
+    /// Record only this element, as JOINT/3 or by its name, or this kind, as JOINT (repeatable);
+    /// tables show it
     #[arg(long, value_name = "ELEMENT", value_delimiter = ',')]
     only: Vec<Chosen>,
     /// Record velocities and accelerations of the bodies' centres of mass, eight each; tables show

@@ -190,7 +190,8 @@ const LINEAR: u32 = 7;
 
 impl Session {
     /// Begins with a model; `name` is the base name of its results.
-    pub fn new(model: Model, name: &str, mut options: Options) -> Self {
+    pub fn new(model: Model, name: &str, options: Options) -> Self {
+        let mut options = options;
         options.choose_in(&model);
         let units = units(&model);
         let mut run = Run::new(name, model.title.clone(), units);
