@@ -85,7 +85,7 @@ fn phases(run: &Run, rows: &[usize]) -> Vec<Kind> {
     kinds
 }
 
-/// Returns the rows that are shown: some at equal distances, and where few simulations follow each
+/// Returns the rows that are shown: some at equal times, and where few simulations follow each
 /// other the first and last of each.
 fn selected(run: &Run, rows: &[usize]) -> Vec<usize> {
     let n = rows.len();
@@ -110,13 +110,32 @@ fn selected(run: &Run, rows: &[usize]) -> Vec<usize> {
         0 | 1 => ROWS - 1,
         _ => ROWS_OF_SEVERAL - 1,
     };
-    let mut shown: Vec<usize> = (0..=last).map(|k| rows[k * (n - 1) / last]).collect();
+    let mut shown = at_equal_times(run, rows, last);
     if ends.len() <= 2 * SIMULATIONS {
         shown.extend(ends.into_iter().filter(|row| rows.contains(row)));
     }
     shown.sort_unstable();
     shown.dedup();
     shown
+}
+
+/// Returns the rows at equal parts of the time from the first to the last, these two among them; of
+/// rows that time does not tell apart, equal parts of their number.
+fn at_equal_times(run: &Run, rows: &[usize], parts: usize) -> Vec<usize> {
+    let n = rows.len();
+    let time = |row: usize| run.columns.first().map_or(0.0, |time| time.values[row]);
+    let (begin, span) = (time(rows[0]), time(rows[n - 1]) - time(rows[0]));
+    let tiny = 1e-9 * span;
+    let at = |k: usize| match k {
+        0 => rows[0],
+        _ if span > 0.0 => {
+            let t = begin + span * k as f64 / parts as f64;
+            let after = rows.partition_point(|&row| time(row) <= t + tiny);
+            rows[after.saturating_sub(1)]
+        }
+        _ => rows[k * (n - 1) / parts],
+    };
+    (0..=parts).map(at).collect()
 }
 
 /// Prints the numbers of a column with as many decimals as its largest needs for six digits; the
@@ -385,6 +404,23 @@ mod tests {
             "{text}"
         );
         assert!(text.contains("0.3") && !text.contains("0.30"), "{text}");
+    }
+
+    #[test]
+    fn rows_are_shown_at_round_times_whatever_came_before_the_motion() {
+        let mut run = Run::new("r", "t", Units::default());
+        run.add_column("x", "mm");
+        run.begin(Kind::Static);
+        run.push(&[0.0, 1.0]);
+        run.end();
+        run.begin(Kind::Dynamic);
+        (1..=600).for_each(|k| run.push(&[f64::from(k) * 0.01, 1.0]));
+        run.end();
+        let text = table(&run, 601, 80, "");
+        let times: Vec<&str> = text.lines().skip(2).filter_map(|l| l.get(..4)).collect();
+        let (first, rest) = times.split_at(2);
+        assert_eq!(first, ["0.00", "0.01"]);
+        assert_eq!(rest[..3], ["0.75", "1.50", "2.25"]);
     }
 
     #[test]
