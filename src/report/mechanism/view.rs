@@ -3,6 +3,7 @@
 use super::bodies::{Anchor, Bodies};
 use crate::model::{JointKind, Model};
 use crate::space::Vec3;
+use std::collections::BTreeMap;
 
 /// Cosine of the largest angle between axes that count as parallel.
 const PARALLEL: f64 = 0.999;
@@ -126,10 +127,17 @@ fn plane(model: &Model, bodies: &Bodies) -> Option<Vec3<f64>> {
     };
     let mut normal: Option<Vec3<f64>> = None;
     let mut within = Vec::new();
+    // how each body is held: by balls alone, and by how many
+    let mut balls = BTreeMap::new();
     for joint in model.joints.values() {
         let Some(z) = bodies.marker(joint.j).or(bodies.marker(joint.i)).map(z_of) else {
             continue;
         };
+        for Anchor { body, .. } in [joint.i, joint.j].iter().filter_map(|m| bodies.marker(*m)) {
+            let (alone, count) = balls.entry(body).or_insert((true, 0));
+            *alone &= joint.kind == JointKind::Spherical;
+            *count += 1;
+        }
         match joint.kind {
             JointKind::Revolute | JointKind::Planar => {
                 let n = *normal.get_or_insert(z);
@@ -146,6 +154,10 @@ fn plane(model: &Model, bodies: &Bodies) -> Option<Vec3<f64>> {
         }
     }
     let n = normal?;
+    if balls.values().any(|held| *held == (true, 1)) {
+        // a body that hangs on one ball swings out of every plane
+        return None;
+    }
     if within.iter().any(|z| n.dot(*z).abs() > 0.05) {
         return None;
     }
@@ -156,4 +168,28 @@ fn plane(model: &Model, bodies: &Bodies) -> Option<Vec3<f64>> {
     let is_along_y = n.0[1].abs() > PARALLEL;
     let flip = (largest < 0.0) != is_along_y;
     Some(if flip { -n } else { n })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An arm about Z, a load at its end on a joint, and gravity along Z.
+    fn load_on(joint: &str) -> View {
+        let text = format!(
+            "a crane\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=20, IP=1,1,1\n\
+             MARKER/20, PART=2\nMARKER/21, PART=2, QP=5,0,0\nPART/3, MASS=1, CM=31, IP=1,1,1\n\
+             MARKER/30, PART=3, QP=5,0,0\nMARKER/31, PART=3, QP=5,0,-1\n\
+             JOINT/1, REVOLUTE, I=20, J=1\nJOINT/2, {joint}, I=30, J=21\nACCGRAV/KGRAV=-9.81\nEND\n"
+        );
+        let model = Model::from_text(&text).expect("a model");
+        let corners = [Vec3([0.0; 3]), Vec3([5.0, 0.0, 1.0])];
+        View::new(&model, &Bodies::new(&model), corners[0], corners[1])
+    }
+
+    #[test]
+    fn an_arm_with_a_load_on_a_ball_is_seen_in_perspective_and_one_on_a_hinge_in_its_plane() {
+        assert!(!load_on("SPHERICAL").is_planar);
+        assert!(load_on("REVOLUTE").is_planar);
+    }
 }
