@@ -211,9 +211,8 @@ impl Inner {
 
 /// Adds the name of the element that a mistake is about.
 fn named(model: &Model, mut said: Diagnostic) -> Diagnostic {
-    let id = said.element.as_deref().and_then(|e| e.parse().ok());
-    let element = id.and_then(|id| model.element(id));
-    said.name = element.and_then(|e| e.place().name.clone());
+    let name = said.subject().and_then(|s| model.name_of(&s));
+    said.name = name.map(str::to_owned);
     said
 }
 

@@ -45,9 +45,8 @@ impl Model {
             return Ok(());
         }
         for d in &mut wrong {
-            let id = d.element.as_deref().and_then(|e| e.parse().ok());
-            let element = id.and_then(|id| self.element(id));
-            d.name = element.and_then(|e| e.place().name.clone());
+            let name = d.subject().and_then(|s| self.name_of(&s));
+            d.name = name.map(str::to_owned);
         }
         Err(wrong.into())
     }

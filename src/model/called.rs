@@ -1,7 +1,7 @@
 //! Elements by what a user calls them: keyword and number, or the name that the dataset gives.
 
 use super::{Element, ElementId, ElementKind, Model};
-use crate::diagnostic::{Cause, Diagnostic, near_names};
+use crate::diagnostic::{Cause, Diagnostic, Subject, near_names};
 
 /// Numbers, or names, of which none is left out of advice.
 const MOST: usize = 12;
@@ -45,6 +45,12 @@ impl Model {
             true => d.help("name it as JOINT/3, or by the name that the dataset gives it"),
             false => d.help(format!("did you mean {}?", near.join(" or "))),
         })
+    }
+
+    /// Returns the name that the dataset gives to the element that a message is about.
+    pub(crate) fn name_of(&self, subject: &Subject) -> Option<&str> {
+        let id = subject.element.parse().ok()?;
+        self.element(id)?.place().name.as_deref()
     }
 
     /// Returns the mistake about an element that does not exist, with those that do.

@@ -163,12 +163,7 @@ impl AssemblyWarning {
 
     /// Returns the element that it is about.
     pub(super) fn subject(&self) -> Subject {
-        self.element().into()
-    }
-
-    /// Returns the element that it is about.
-    pub(super) fn element(&self) -> ElementId {
-        match *self {
+        let element = match *self {
             AssemblyWarning::Axes(ref found) => found.element,
             AssemblyWarning::Turned { ref parts } => {
                 (parts.first()).map_or(ElementKind::Part.id(0), |first| first.0)
@@ -182,7 +177,8 @@ impl AssemblyWarning {
             | AssemblyWarning::Moved { element, .. }
             | AssemblyWarning::Struck { element, .. }
             | AssemblyWarning::HeldSum { element, .. } => element,
-        }
+        };
+        element.into()
     }
 
     /// Returns the sentence after the subject.

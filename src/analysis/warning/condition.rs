@@ -64,12 +64,7 @@ impl ConditionWarning {
 
     /// Returns the element that it is about.
     pub(super) fn subject(&self) -> Subject {
-        self.element().into()
-    }
-
-    /// Returns the element that it is about.
-    pub(super) fn element(&self) -> ElementId {
-        match *self {
+        let element = match *self {
             ConditionWarning::ViewOrder { ref joints } => {
                 (joints.first()).map_or(ElementKind::Joint.id(0), |first| first.0)
             }
@@ -77,7 +72,8 @@ impl ConditionWarning {
             | ConditionWarning::UnmetRate { element, .. }
             | ConditionWarning::Unmet { element, .. }
             | ConditionWarning::UnmetContact { element, .. } => element,
-        }
+        };
+        element.into()
     }
 
     /// Returns the sentence after the subject.

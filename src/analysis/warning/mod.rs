@@ -75,24 +75,16 @@ impl Warning {
         }
     }
 
-    /// Returns the element that it is about, where it is one.
-    fn id(&self) -> Option<ElementId> {
-        match self {
-            Warning::Scene(d) => of_diagnostic(d),
-            Warning::Assembly(w) => Some(w.element()),
-            Warning::Condition(w) => Some(w.element()),
-            Warning::Run(w) => w.element(),
-            Warning::Verification(w) => w.element(),
-        }
-    }
-
     /// Returns it as the record of a run of that model keeps it.
     pub fn record(&self, model: &Model) -> results::Warning {
         let names = Names(Some(model));
         results::Warning {
             code: self.code(),
             subject: self.subject(),
-            name: self.id().and_then(|id| names.name(id)).map(str::to_owned),
+            name: self
+                .subject()
+                .and_then(|s| model.name_of(&s))
+                .map(str::to_owned),
             rest: self.rest(&names),
         }
     }
@@ -118,11 +110,6 @@ impl<'m> Names<'m> {
     fn of(&self, id: ElementId) -> String {
         Subject::from(id).named(self.name(id))
     }
-}
-
-/// Returns the element that a diagnostic is about, which it holds as it is printed.
-fn of_diagnostic(d: &Diagnostic) -> Option<ElementId> {
-    d.element.as_deref()?.parse().ok()
 }
 
 /// Returns the subject of a diagnostic.

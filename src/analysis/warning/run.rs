@@ -1,6 +1,6 @@
 //! Warnings of simulations: of motions that jump, of columns without values, of ranks, of methods.
 
-use super::{Names, of_diagnostic};
+use super::Names;
 use crate::analysis::quantity::{amount, place, short};
 use crate::diagnostic::{Diagnostic, Subject};
 use crate::model::{ElementId, ElementKind};
@@ -165,30 +165,6 @@ impl RunWarning {
                 element, equation, ..
             } => Some(Subject::part_of(*element, equation)),
             RunWarning::NoFreedom
-            | RunWarning::Held
-            | RunWarning::NothingToSimulate { .. }
-            | RunWarning::Rank(_)
-            | RunWarning::Unstable { .. }
-            | RunWarning::BelowRounding { .. }
-            | RunWarning::EnergyUnsure { .. }
-            | RunWarning::PhaseUnsure { .. }
-            | RunWarning::StabilityLimited { .. }
-            | RunWarning::CompanionEnded { .. } => None,
-        }
-    }
-
-    /// Returns the element that it is about, where it is one.
-    pub(super) fn element(&self) -> Option<ElementId> {
-        match self {
-            RunWarning::MotionJumps { motion, .. } => Some(ElementKind::Motion.id(*motion)),
-            RunWarning::MethodReplaced(d) | RunWarning::LockedWithoutMotions(d) => of_diagnostic(d),
-            RunWarning::ContactsWithoutFreedom(contacts) => contacts.first().copied(),
-            RunWarning::EmptyColumn(unsupported) => unsupported.asked_by.element(),
-            RunWarning::EnergyGrows { fed_by, .. } => *fed_by,
-            RunWarning::OutsideData { element, .. }
-            | RunWarning::BeyondTolerance { element, .. } => Some(*element),
-            RunWarning::Gap { .. }
-            | RunWarning::NoFreedom
             | RunWarning::Held
             | RunWarning::NothingToSimulate { .. }
             | RunWarning::Rank(_)

@@ -1,6 +1,6 @@
 //! Warnings of verifications: what is taken for granted, and what a simulation would need.
 
-use super::{of_diagnostic, owner};
+use super::owner;
 use crate::diagnostic::{Cause, Diagnostic, Subject};
 use crate::model::ElementId;
 use crate::scene::left_out::Hidden;
@@ -48,16 +48,6 @@ impl VerificationWarning {
             VerificationWarning::Massless(d) => Some(owner(d)),
             VerificationWarning::StandsStill(element)
             | VerificationWarning::UnknownConstraint { element, .. } => Some((*element).into()),
-            VerificationWarning::FreedomNearby { .. } => None,
-        }
-    }
-
-    /// Returns the element that it is about, where it is one.
-    pub(super) fn element(&self) -> Option<ElementId> {
-        match self {
-            VerificationWarning::Massless(d) => of_diagnostic(d),
-            VerificationWarning::StandsStill(element)
-            | VerificationWarning::UnknownConstraint { element, .. } => Some(*element),
             VerificationWarning::FreedomNearby { .. } => None,
         }
     }
