@@ -1,5 +1,6 @@
 //! The result of an analysis over time: states at output times, events, and why it ended.
 
+use super::time::runaway::{Runaway, RunsAway};
 use crate::numeric::{Stats, Stop};
 use crate::scene::broken::Broken;
 use std::collections::BTreeMap;
@@ -21,6 +22,8 @@ pub enum Ended {
         /// which, and what to do
         broken: Broken,
     },
+    /// the motion grows without bound, in ever shorter steps
+    RunsAway(RunsAway),
 }
 
 /// The reason why a method works from some time on.
@@ -128,6 +131,8 @@ pub struct Trajectory {
     pub last_step: Option<(f64, f64)>,
     /// where energy came from and where it went
     pub energy: EnergyFlow,
+    /// how it grows
+    pub(in crate::analysis) runaway: Runaway,
     /// steps that something else than the permitted error ended
     pub limited: Limited,
     /// `None`: all output times were reached

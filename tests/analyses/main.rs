@@ -37,6 +37,7 @@ mod outputs;
 mod rates;
 mod references;
 mod rounding;
+mod runaway;
 mod saved;
 mod sessions;
 mod statics;

@@ -142,15 +142,21 @@ fn of<'a>(
     if !largest.windows(2).all(grows) || largest[3] <= BEYOND_ALL * energy {
         return None;
     }
-    let at = Equations::new(scene, last);
-    let powers = scene.forces.iter().map(|f| (power(f, &at), f.id));
-    let fed_by = powers
-        .filter(|(power, _)| *power > 0.0)
-        .max_by(|a, b| a.0.total_cmp(&b.0));
     Some(Growth {
         factor: largest[3] / energy,
-        fed_by: fed_by.map(|(_, id)| id),
+        fed_by: fed_by(system, last),
     })
+}
+
+/// Returns the force with the largest power at a state.
+pub(super) fn fed_by(system: &System, numbers: &[f64]) -> Option<ElementId> {
+    let scene = system.configured();
+    let at = Equations::new(scene, numbers);
+    let powers = scene.forces.iter().map(|f| (power(f, &at), f.id));
+    let most = powers
+        .filter(|(power, _)| *power > 0.0)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    most.map(|(_, id)| id)
 }
 
 /// Returns the power of a force, and of its reaction on J.

@@ -2,6 +2,7 @@
 //! and which element is to blame.
 
 use super::Session;
+use super::growth;
 use super::stop_reason::{Cause, StopReason};
 use crate::analysis::start::alignment;
 use crate::analysis::start::assemble::{Assembly, Redundant};
@@ -169,6 +170,10 @@ impl Session {
             Ended::Broken { t, broken } => StopReason::Contact {
                 at: *t,
                 broken: broken.clone(),
+            },
+            Ended::RunsAway(away) => StopReason::RunsAway {
+                away: *away,
+                fed_by: growth::fed_by(system, trajectory.rows.last().unwrap_or(&system.numbers)),
             },
             Ended::Stop(stop) => {
                 let stands = trajectory.rows.last().unwrap_or(&system.numbers);

@@ -66,7 +66,9 @@ impl Session {
         }
         self.last = Integrated::of(kind, &trajectory, settings.error, span);
         let last = trajectory.rows.last().cloned();
-        self.warn_of_growth(seen.looks.growth(system));
+        if !matches!(stopped, Some(StopReason::RunsAway { .. })) {
+            self.warn_of_growth(seen.looks.growth(system));
+        }
         if seen.swings.exceed(settings.error) {
             self.warn_of_energy(system, &seen, &trajectory);
         }

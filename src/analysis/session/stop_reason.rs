@@ -5,8 +5,9 @@ use super::limit::Reached;
 use crate::analysis::quantity::place;
 use crate::analysis::statics::Imbalance;
 use crate::analysis::time::ranks::Lock;
+use crate::analysis::time::runaway::RunsAway;
 use crate::analysis::time::valueless::Valueless;
-use crate::model::ElementKind;
+use crate::model::{ElementId, ElementKind};
 use crate::results::Status;
 use crate::scene::broken::Broken;
 use std::fmt;
@@ -43,6 +44,13 @@ pub(super) enum StopReason {
         at: f64,
         /// which, and how
         lost: Valueless,
+    },
+    /// the motion grows without bound, in ever shorter steps
+    RunsAway {
+        /// when, and how
+        away: RunsAway,
+        /// the force with the largest power there
+        fed_by: Option<ElementId>,
     },
     /// the rows can be kept no longer
     Locked {
@@ -142,6 +150,7 @@ impl StopReason {
             StopReason::Sensor { .. } => "sensor",
             StopReason::Contact { broken, .. } => broken.code(),
             StopReason::Function { .. } => "no_finite_value",
+            StopReason::RunsAway { .. } => "energy_grows",
             StopReason::Locked { .. } => "locked",
             StopReason::Method { cause, .. } => cause.code(),
             StopReason::NoEquilibrium { .. } => "no_equilibrium",
@@ -158,6 +167,7 @@ impl StopReason {
             | StopReason::Sensor { .. }
             | StopReason::Contact { .. }
             | StopReason::Function { .. }
+            | StopReason::RunsAway { .. }
             | StopReason::NoEquilibrium { .. } => false,
         }
     }
@@ -171,6 +181,7 @@ impl StopReason {
             StopReason::Sensor { .. } => Status::Completed,
             StopReason::Contact { .. }
             | StopReason::Function { .. }
+            | StopReason::RunsAway { .. }
             | StopReason::Locked { .. } => Status::Stopped,
             StopReason::Method { cause, .. } => match cause {
                 Cause::TooManySteps => Status::Limit,
@@ -198,6 +209,9 @@ impl StopReason {
             },
             StopReason::Contact { broken, .. } => return vec![broken.element.to_string()],
             StopReason::Function { lost, .. } => return vec![lost.function.to_string()],
+            StopReason::RunsAway { fed_by, .. } => {
+                return fed_by.iter().map(ToString::to_string).collect();
+            }
             StopReason::Locked { lock, .. } => &lock.row,
             StopReason::Method { worst, .. } => worst,
             StopReason::NoEquilibrium { imbalance, .. } => imbalance.name(),
@@ -224,6 +238,22 @@ impl fmt::Display for StopReason {
                 write!(f, "stopped at time {at}: {what}; {advice}")
             }
             StopReason::Function { at, lost } => write!(f, "stopped at time {at}: {lost}"),
+            StopReason::RunsAway { away, fed_by } => {
+                let RunsAway {
+                    t,
+                    within,
+                    steps_left,
+                } = away;
+                write!(
+                    f,
+                    "stopped at time {t}: the motion grows without bound, its kinetic energy a thousand times within {within:.3}; \
+                     the end would be {steps_left:.0e} ever shorter steps away"
+                )?;
+                match fed_by {
+                    Some(id) => write!(f, "; {id} feeds it: is its sign what you mean?"),
+                    None => Ok(()),
+                }
+            }
             StopReason::Locked { at, lock } => {
                 write!(f, "stopped at time {at}: ")?;
                 let row = &lock.row;

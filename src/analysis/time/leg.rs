@@ -216,10 +216,12 @@ impl<'a> Leg<'a> {
         self.begin_peaks(method);
         self.system.take_weak();
         self.progressed = (attempted(method), method.t());
+        self.out.runaway.begin();
         Ok(())
     }
 
-    /// Ends a run that comes no further, that the caller ends, or that slides where it must not.
+    /// Ends a run that comes no further or runs away, that the caller ends, or that slides where it
+    /// must not.
     fn check(&mut self, method: &dyn Method<System>) -> Result<(), Finished> {
         if attempted(method) > self.progressed.0 + self.stalled_steps {
             let duration = self.limits.end - self.limits.start;
@@ -227,6 +229,12 @@ impl<'a> Leg<'a> {
                 let (t, h) = (method.t(), 0.0);
                 let reason = Reason::Stalled(fastest(method.ydot()));
                 return Err(Stop { reason, t, h }.into());
+            }
+            let steps = attempted(method) - self.progressed.0;
+            let advanced = method.t() - self.progressed.1;
+            let span = (method.t(), self.limits.end);
+            if let Some(away) = self.out.runaway.judge(span, steps, advanced) {
+                return Err(Finished::Ended(Ended::RunsAway(away)));
             }
             self.progressed = (attempted(method), method.t());
         }
@@ -388,6 +396,7 @@ impl<'a> Leg<'a> {
         let duration = (self.limits.start, self.limits.end);
         self.accountant
             .account(&mut self.out.energy, self.system, method, step, duration);
+        (self.out.runaway).see(self.system, method, duration.1 - duration.0);
         if step.t1 >= self.limit && self.limit < self.limits.end {
             let limited = &mut self.out.limited;
             match self.lands_for_output {
