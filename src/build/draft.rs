@@ -195,6 +195,7 @@ impl Inner {
         }
         // what seems to be missing may be what was not understood
         let mistaken: BTreeSet<String> = wrong.iter().filter_map(|d| d.element.clone()).collect();
+        let mistaken = model.with_readers_of_data(mistaken);
         let mut found = model.check();
         found.retain(|d| {
             let excused = d.element.as_ref().is_some_and(|e| mistaken.contains(e));

@@ -175,8 +175,9 @@ pub fn read_source(source: Source) -> Reading {
         out.push(source.locate(d, Span::new(at, at)));
     }
     extension::read(&source, &syntax, &mut reading.model, out);
+    let mistaken = reading.model.with_readers_of_data(mistaken);
     for d in reading.model.contradictions() {
-        // What seems to be missing may be what was not understood.
+        // what seems to be missing may be what was not understood
         let excused = d.element.as_ref().is_some_and(|e| mistaken.contains(e));
         if excused && !d.is(Cause::UnknownElement) {
             continue;

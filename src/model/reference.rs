@@ -3,6 +3,7 @@
 
 use super::check::references::named;
 use super::{ById, ElementId, ElementKind, Family, Formula, Model, Part, Place};
+use std::collections::BTreeSet;
 
 /// One element names another.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +47,21 @@ impl Model {
             }));
         }
         all
+    }
+
+    /// Returns elements of which a mistake is known, as messages name them, and those that name data
+    /// among them: what is found in these may follow from it.
+    pub(crate) fn with_readers_of_data(&self, mut mistaken: BTreeSet<String>) -> BTreeSet<String> {
+        if mistaken.is_empty() {
+            return mistaken;
+        }
+        let named = |r: &Reference<'_>| {
+            r.target.kind.family() == Family::Data && mistaken.contains(&r.target.to_string())
+        };
+        let all = self.references().into_iter().filter(named);
+        let readers: Vec<String> = all.map(|r| r.element.to_string()).collect();
+        mistaken.extend(readers);
+        mistaken
     }
 
     /// Returns every FUNCTION of the model with its owner.

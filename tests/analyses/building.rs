@@ -188,7 +188,7 @@ fn mistakes_are_told_at_once_by_the_names_of_their_elements() {
         "`free` stands between two bodies",
         "JOINT/2 'hinge' IC takes 1 to 2 numbers, not 3",
         "JOINT/2 'hinge' REVOLUTE and FIXED are both given as the type",
-        "SFORCE/1 'push' SFORCE/1 needs FUNCTION = an expression",
+        "SFORCE/1 'push' needs FUNCTION = an expression",
         "SFORCE/2 'turn' its closure returns 2 numbers; it needs 1: the force or torque",
         "SPRINGDAMPER/1 'spring' K takes a number, not `stiff`",
         "`INTEGRATER` is no statement of settings",

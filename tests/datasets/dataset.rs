@@ -1025,3 +1025,84 @@ fn a_file_that_is_no_text_is_refused_as_such() {
     }
     std::fs::remove_dir_all(&folder).unwrap();
 }
+
+#[test]
+fn what_is_found_in_an_element_whose_data_was_not_understood_may_follow_from_that() {
+    let curve = |more: &str| {
+        let text = format!(
+            "a curve\nPART/1, GROUND\nMATRIX/1, FULL=RORDER, ROWS=4, COLUMNS=3{more}\n\
+             , VALUES=0,0,0,1,0,0,1,1,0,0,1,0\nCURVE/1, CLOSED, CURVE_POINTS, MATRIX=1\n\
+             ARRAY/1, IC, NUMBERS=1{more}\nLSE/1, X=1, A=1\nEND\n"
+        );
+        let found = dataset::read_text(&text).diagnostics;
+        let errors = found.iter().filter(|d| d.severity == Severity::Error);
+        errors
+            .map(|d| (d.element.clone().unwrap_or_default(), d.code))
+            .collect::<Vec<_>>()
+    };
+    let of = |element: &str, found: &[(String, &str)]| found.iter().any(|d| d.0 == element);
+    // its ends are apart, and the array is no state
+    let found = curve("");
+    assert!(of("CURVE/1", &found) && of("LSE/1", &found), "{found:?}");
+    // as far as anybody can tell from what was read
+    let found = curve(", WIDTH=3");
+    let expected = [
+        ("MATRIX/1", "unknown_argument"),
+        ("ARRAY/1", "unknown_argument"),
+    ];
+    assert_eq!(found, expected.map(|(e, c)| (e.to_owned(), c)));
+}
+
+#[test]
+fn a_force_between_markers_between_which_nothing_acts_is_told_with_what_acts_there() {
+    let doubts = |asked: &str| {
+        let text = format!(
+            "asked\nPART/1, GROUND\nMARKER/1, PART=1\nMARKER/2, PART=1\nPART/2, MASS=1, CM=20, IP=1,1,1\n\
+             MARKER/20, PART=2\nMARKER/21, PART=2\nMARKER/22, PART=1, FLOATING\n\
+             JOINT/1, REVOLUTE, I=20, J=1\nVFORCE/1, I=21, JFLOAT=22, RM=1, FX=1\\FY=0\\FZ=0\n\
+             SFORCE/1, TRANSLATION, I=21, J=2, ACTIONONLY, FUNCTION=1\n{asked}\nEND\n"
+        );
+        let model = Model::from_text(&text).expect("no mistake");
+        let found = model
+            .doubts()
+            .into_iter()
+            .filter(|d| d.code == "nothing_acts");
+        found
+            .map(|d| format!("{} {:?}", d.message, d.help))
+            .collect::<Vec<_>>()
+    };
+    let there = [
+        "REQUEST/1, FORCE, I=20, J=1",
+        "REQUEST/1, FORCE, I=1, J=20, RM=2",
+        "REQUEST/1, FORCE, I=21",
+        "REQUEST/1, F2=FX(21,22)+TM(1,20)\\F3=FZ(21)",
+    ];
+    for asked in there {
+        assert_eq!(doubts(asked), [""; 0], "{asked}");
+    }
+    let nowhere = [
+        (
+            "REQUEST/1, FORCE, I=20, J=2",
+            "the FORCE",
+            "JOINT/1 acts between MARKER/20 and MARKER/1",
+        ),
+        ("REQUEST/1, FORCE, I=20", "the FORCE", "without a reaction"),
+        (
+            "VARIABLE/1, FUNCTION=2*TY(21,1)",
+            "FUNCTION: TY(21,1)",
+            "nothing acts between MARKER/21 and MARKER/1",
+        ),
+        (
+            "VARIABLE/1, FUNCTION=FM(20)",
+            "FUNCTION: FM(20)",
+            "without a reaction",
+        ),
+    ];
+    for (asked, what, why) in nowhere {
+        let found = doubts(asked);
+        assert!(
+            found.len() == 1 && found[0].contains(what) && found[0].contains(why),
+            "{asked}: {found:?}"
+        );
+    }
+}

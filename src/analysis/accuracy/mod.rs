@@ -144,8 +144,7 @@ impl Comparison<'_> {
         });
         let floor = f64::EPSILON
             * (ROUNDING_OF_CHANNEL * low.abs().max(high.abs()).min(f64::MAX)
-                + ROUNDING_OF_UNIT * largest_of_unit)
-                .max(f64::MIN_POSITIVE);
+                + ROUNDING_OF_UNIT * largest_of_unit);
         let mut differences = self.differences(values, others);
         let unknown: Vec<bool> = differences.iter().map(|d| d.is_nan()).collect();
         envelope(&mut differences);

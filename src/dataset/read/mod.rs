@@ -241,7 +241,7 @@ impl<'a> Reader<'a> {
             }
             (_, false) => {
                 let message = format!(
-                    "{} needs = {}",
+                    "{} needs a value: {}",
                     self.arguments[argument].keyword(),
                     kind.describe()
                 );

@@ -118,7 +118,7 @@ impl<T: Element> Statement for Numbered<T> {
             }
             (Some(e), false) => {
                 let line = e.place().map_or(0, |p| p.line);
-                let mut p = Problem::new("defined_twice", format!("{name} is defined twice"));
+                let mut p = Problem::new("defined_twice", "is defined twice");
                 p.help = (line > 0).then(|| format!("the first stands in line {line}"));
                 return vec![p];
             }
@@ -130,7 +130,7 @@ impl<T: Element> Statement for Numbered<T> {
         let mut problems = apply(self.bindings, &mut element, record);
         if !change {
             if !record.mistaken {
-                problems.extend(incomplete(self.bindings, record, &name));
+                problems.extend(incomplete(self.bindings, record));
             }
             if let Some(place) = element.place_mut() {
                 let extra = std::mem::take(&mut place.extra);
@@ -341,7 +341,7 @@ pub fn filled<T: Default>(bindings: &'static [Binding<T>], record: &Record) -> T
 }
 
 /// Returns the required arguments that a new element misses.
-fn incomplete<T>(bindings: &'static [Binding<T>], record: &Record, name: &str) -> Vec<Problem> {
+fn incomplete<T>(bindings: &'static [Binding<T>], record: &Record) -> Vec<Problem> {
     let mut problems = Vec::new();
     let has = |k: usize| record.given.iter().any(|g| g.argument == k);
     let mut groups_seen: Vec<&str> = Vec::new();
@@ -350,7 +350,7 @@ fn incomplete<T>(bindings: &'static [Binding<T>], record: &Record, name: &str) -
             None if b.argument.required && !has(k) => problems.push(Problem::new(
                 "missing_argument",
                 format!(
-                    "{name} needs {} = {}",
+                    "needs {} = {}",
                     b.argument.keyword(),
                     b.argument.kind.describe()
                 ),
@@ -366,10 +366,7 @@ fn incomplete<T>(bindings: &'static [Binding<T>], record: &Record, name: &str) -
                         members.iter().map(|(_, m)| m.argument.keyword()).collect();
                     problems.push(Problem::new(
                         "missing_argument",
-                        format!(
-                            "{name} does not say its {group}: one of {}",
-                            words.join(", ")
-                        ),
+                        format!("does not say its {group}: one of {}", words.join(", ")),
                     ));
                 }
             }

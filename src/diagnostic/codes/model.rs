@@ -636,6 +636,16 @@ Usually a component or a component's marker was forgotten, or an argument belong
     SIMULATE/INITIAL_CONDITIONS, END=1   leave END out, or write SIMULATE/DYNAMIC, END=1",
     },
     Code {
+        name: "nothing_acts",
+        summary: "a force is asked between two markers between which nothing acts",
+        explanation: "\
+FX(i,j) and REQUEST/…, FORCE add up what acts between these two markers: the I and the J of one force or joint, in either order. Between
+others they are zero for ever, whatever acts between the parts. Without J they are what acts without a reaction (SFORCE, ACTIONONLY).
+
+    JOINT/1, REVOLUTE, I=21, J=10
+    FX(21,11)                            another marker of the same part: FX(21,10)",
+    },
+    Code {
         name: "model",
         summary: "something in the model stands in the way of solving it",
         explanation: "\

@@ -8,6 +8,7 @@
 pub(crate) mod alignment;
 mod angles;
 mod beginnings;
+mod between;
 mod bodies;
 mod constraints;
 mod constraints_twice;
@@ -118,6 +119,7 @@ pub const DOUBTS: &[Rule] = &[
         superseded::joints_have_no_old_friction,
     ),
     ("joints stand once", constraints_twice::joints_stand_once),
+    ("forces act where asked", between::forces_act_where_asked),
 ];
 
 impl Model {
