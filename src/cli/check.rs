@@ -162,6 +162,12 @@ fn assembled(
         found.splice(0..0, doubts);
     }
     found.dedup();
+    // the reader has told, with more advice, what can be seen without assembly
+    let told = |d: &Diagnostic| {
+        let mut read = reading.diagnostics.iter();
+        read.any(|r| r.code == d.code && r.element == d.element && r.message == d.message)
+    };
+    found.retain(|d| !told(d));
     (found.into_iter().map(|d| reading.dataset.locate(d))).collect()
 }
 

@@ -496,7 +496,8 @@ fn command(folder: &Path, arguments: &[&str]) -> (i32, String) {
     (done.status.code().unwrap_or(-1), text)
 }
 
-/// The first paragraph with an error or a warning that `check`, `verify` and `run` come up with.
+/// The first paragraph with an error or a warning that `check`, `verify` and `run` come up with; none
+/// says anything twice.
 fn first_message(folder: &Path, model: &str) -> Option<String> {
     let run = [
         "run", model, "--end", "1", "--steps", "20", "--out", "results",
@@ -505,8 +506,15 @@ fn first_message(folder: &Path, model: &str) -> Option<String> {
         let (code, text) = command(folder, arguments);
         assert!(!matches!(code, -1 | 1), "{arguments:?}: {text}");
         let speaks = |line: &&str| line.starts_with("error") || line.starts_with("warning");
-        if let Some(line) = text.lines().find(speaks) {
-            return Some(line.to_owned());
+        let said: Vec<&str> = text.lines().filter(speaks).collect();
+        // a finding has its place behind it: two elements may lack the same
+        let placed = text.lines().zip(text.lines().skip(1));
+        let mut placed: Vec<_> = placed.filter(|(line, _)| speaks(line)).collect();
+        placed.sort_unstable();
+        let twice = placed.windows(2).find(|w| w[0] == w[1]);
+        assert_eq!(twice, None, "{arguments:?}: {text}");
+        if let Some(line) = said.first() {
+            return Some((*line).to_owned());
         }
     }
     None
