@@ -53,7 +53,7 @@ mod width;
 
 use crate::dataset::Dataset;
 use crate::diagnostic::{Cause, Diagnostic, Error};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use render::Sources;
 use std::io::Write;
 use std::process::ExitCode;
@@ -66,7 +66,10 @@ struct Cli {
     verb: Verb,
 }
 
+/// The arguments of a verb are described where it is asked for: those of all of them were a
+/// millisecond of every run.
 #[derive(Subcommand)]
+#[command(defer = true)]
 enum Verb {
     Animate(animate::Args),
     Check(check::Args),
@@ -216,7 +219,7 @@ const STACK_BYTES: usize = 256 << 20;
 
 /// Runs the command that the arguments of the process name.
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = parsed();
     std::thread::scope(|scope| {
         let worker = std::thread::Builder::new().stack_size(STACK_BYTES);
         match worker.spawn_scoped(scope, || obey(&cli)) {
@@ -225,6 +228,21 @@ pub fn main() -> ExitCode {
             Err(_) => obey(&cli),
         }
     })
+}
+
+/// Returns the arguments of the process; ends it where they are not understood or ask for help.
+fn parsed() -> Cli {
+    let mut command = Cli::command();
+    let first = std::env::args_os().nth(1).unwrap_or_default();
+    if !command
+        .get_subcommands()
+        .any(|verb| first == *verb.get_name())
+    {
+        // the list of verbs says what each is for
+        command.build();
+    }
+    let found = Cli::from_arg_matches(&command.get_matches_mut());
+    found.unwrap_or_else(|e| e.format(&mut command).exit())
 }
 
 /// Runs a command.

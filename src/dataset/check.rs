@@ -1,7 +1,7 @@
 //! All that is wrong with a model, whoever made it: a file holds finite numbers and arguments that
 //! fit, a program may put in anything.
 
-use super::row::Record;
+use super::row::{canonical, element_name};
 use super::statement::STATEMENTS;
 use super::value::{Number, Value};
 use crate::diagnostic::{Diagnostic, Error, Severity};
@@ -54,22 +54,17 @@ impl Model {
 
 /// Returns the numbers of a model that are not finite.
 fn not_finite(model: &Model) -> Vec<Diagnostic> {
-    let records = STATEMENTS.iter().flat_map(|row| row.records(model));
-    records.flat_map(|record| infinite(&record)).collect()
-}
-
-/// Returns the numbers of a statement that are not finite.
-fn infinite(record: &Record) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    for given in &record.given {
-        let Some(x) = not_finite_in(&given.value) else {
-            continue;
-        };
-        let arguments = record.row.arguments();
-        let keyword = arguments.get(given.argument).map(|a| a.keyword());
-        let what = format!("{} is {x}", keyword.unwrap_or_default());
-        let said = Diagnostic::error("unfit_value", what).element(record.element());
-        found.push(said);
+    for row in STATEMENTS {
+        row.visit_values(model, &mut |id, argument, value| {
+            if let Some(x) = not_finite_in(value) {
+                let arguments = row.arguments();
+                let keyword = arguments.get(argument).map(|a| a.keyword());
+                let what = format!("{} is {x}", keyword.unwrap_or_default());
+                let element = element_name(&canonical(row.keyword()), id);
+                found.push(Diagnostic::error("unfit_value", what).element(element));
+            }
+        });
     }
     found
 }

@@ -13,6 +13,7 @@ mod clock;
 pub mod command;
 mod edit;
 mod extension;
+mod frequent;
 mod idle;
 pub mod lens;
 pub mod manual;

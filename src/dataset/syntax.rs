@@ -4,6 +4,7 @@
 //! The grammar (`grammar/dataset.pest`) says what a statement, a continuation and a comment are.
 //! Nothing here knows any statement by name.
 
+use super::frequent;
 use crate::diagnostic::{Diagnostic, Span};
 use pest::Parser;
 use pest::iterators::Pair;
@@ -272,6 +273,11 @@ use grammar::{Grammar, Rule};
 
 /// Takes a dataset apart.
 pub fn dataset(source: &Source, out: &mut Vec<Diagnostic>) -> Syntax {
+    frequent::dataset(&source.text).unwrap_or_else(|| dataset_by_grammar(source, out))
+}
+
+/// Takes a dataset apart as the grammar says, whatever stands in it.
+pub(super) fn dataset_by_grammar(source: &Source, out: &mut Vec<Diagnostic>) -> Syntax {
     parse(source, Rule::dataset, out)
 }
 

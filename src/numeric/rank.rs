@@ -23,9 +23,10 @@
 //! should be scaled alike by the caller (a length of the mechanism).
 //!
 //! *Zeros*: a reflection touches the columns where its vector is not zero, and only rows that have
-//! something there; the parts of all other rows stay as they were measured. The columns between
-//! which a row has anything tell most of the others at a glance. So rows that share columns with
-//! few others, as in a long chain of loops, take about as long as their entries.
+//! something there; the parts of all other rows stay as they were measured. Rows are found by the
+//! first column in which they have anything, the next one to choose by a tree of the largest parts.
+//! So rows that share columns with few others, as in a long chain of loops, take about as long as
+//! their entries.
 
 use std::ops::Range;
 
@@ -73,7 +74,8 @@ impl Rank {
     /// Decides the rank of the matrix with the given `rows`, each of length `n`.
     pub fn of<'a>(rows: impl IntoIterator<Item = &'a [f64]>, n: usize, tolerance: f64) -> Self {
         let mut l: Vec<Vec<f64>> = rows.into_iter().map(<[f64]>::to_vec).collect();
-        let mut length: Vec<f64> = l.iter().map(|row| norm(row)).collect();
+        let of_row = |row: &Vec<f64>| norm(&row[span_from(row, 0, n)]);
+        let mut length: Vec<f64> = l.iter().map(of_row).collect();
         let longest = length
             .iter()
             .copied()
@@ -107,46 +109,44 @@ impl Rank {
         n: usize,
         tolerance: f64,
     ) -> Self {
-        let m = l.len();
-        let mut remaining: Vec<usize> = (0..m).collect();
         let (mut chosen, mut reflections) = (Vec::new(), Vec::new());
         let (mut kept, mut dropped) = (1.0f64, 0.0f64);
-        // the part of each row outside those chosen so far, and the columns that it lies between
-        let mut part: Vec<f64> = l.iter().map(|row| norm(row)).collect();
-        let mut span: Vec<Range<usize>> = l.iter().map(|row| span_from(row, 0, n)).collect();
-        while !remaining.is_empty() {
+        // the columns that each row lies between, and its part outside the rows chosen so far
+        let mut spans = Spans::new(l.iter().map(|row| span_from(row, 0, n)).collect(), n);
+        let open = l[..leading].iter().zip(&spans.of_row);
+        let mut parts = Parts::new(open.map(|(row, span)| norm(&row[span.clone()])).collect());
+        while chosen.len() < l.len() {
             let k = chosen.len();
-            let open = || remaining.iter().take_while(|i| **i < leading);
-            let largest = open().map(|&i| part[i]).fold(0.0, f64::max);
+            let largest = parts.largest();
             if k == n || largest <= tolerance {
                 dropped = largest;
                 break;
             }
-            let at = open()
-                .position(|&i| part[i] >= PREFERENCE_FOR_EARLIER * largest)
-                .unwrap_or(0);
-            let pivot = remaining.remove(at);
-            kept = kept.min(part[pivot]);
-            let v = reflection(&l[pivot], k, span[pivot].end);
+            let pivot = parts.first_from(PREFERENCE_FOR_EARLIER * largest);
+            kept = kept.min(parts.of(pivot));
+            parts.take(pivot);
+            spans.close(pivot);
+            let end = spans.of_row[pivot].end;
+            let v = reflection(&l[pivot], k, end);
             reflect(&v, &mut l[pivot]);
             let others = v.get(1).map_or(n, |e| e.0)..v.last().map_or(0, |e| e.0 + 1);
-            for &i in &remaining {
-                let apart = span[i].start >= others.end || others.start >= span[i].end;
-                if apart && span[i].start != k {
-                    continue;
-                }
+            for i in spans.take_met(k, &others) {
                 let row = &mut l[i];
                 if reflect(&v, row) || row[k] != 0.0 {
-                    span[i] = span_from(row, k + 1, span[i].end.max(others.end));
-                    part[i] = norm(&row[span[i].clone()]);
+                    let end = spans.of_row[i].end.max(others.end);
+                    spans.of_row[i] = span_from(row, k + 1, end);
+                    if i < leading {
+                        parts.set(i, norm(&row[spans.of_row[i].clone()]));
+                    }
                 }
+                spans.put_back(i);
             }
-            l[pivot][k + 1..span[pivot].end.max(k + 1)].fill(0.0);
+            l[pivot][k + 1..end.max(k + 1)].fill(0.0);
             reflections.push(v);
             chosen.push(pivot);
         }
         let rank = chosen.len();
-        chosen.extend(remaining);
+        chosen.extend((0..l.len()).filter(|&i| spans.is_open[i]));
         Rank {
             n,
             rank,
@@ -333,6 +333,110 @@ impl Rank {
     }
 }
 
+/// The columns between which rows have anything, and the rows by the first of these: what a
+/// reflection touches is found among few.
+struct Spans {
+    /// by row
+    of_row: Vec<Range<usize>>,
+    /// whether a row has not been chosen, by row
+    is_open: Vec<bool>,
+    /// open rows whose span begins at a column   (n + 1)
+    starting_at: Vec<Vec<usize>>,
+}
+
+impl Spans {
+    fn new(of_row: Vec<Range<usize>>, n: usize) -> Self {
+        let mut starting_at = vec![Vec::new(); n + 1];
+        for (i, span) in of_row.iter().enumerate() {
+            starting_at[span.start].push(i);
+        }
+        Self {
+            is_open: vec![true; of_row.len()],
+            of_row,
+            starting_at,
+        }
+    }
+
+    /// Takes a row out for good.
+    fn close(&mut self, row: usize) {
+        self.is_open[row] = false;
+        self.starting_at[self.of_row[row].start].retain(|&i| i != row);
+    }
+
+    /// Takes out the open rows that begin at column `k`, before which none has anything, or have
+    /// something between `others`.
+    fn take_met(&mut self, k: usize, others: &Range<usize>) -> Vec<usize> {
+        let mut met = Vec::new();
+        for column in k..others.end.max(k + 1) {
+            let of_row = &self.of_row;
+            let is_met = |i: &mut usize| {
+                let span = &of_row[*i];
+                column == k || span.start < others.end && others.start < span.end
+            };
+            met.extend(self.starting_at[column].extract_if(.., is_met));
+        }
+        met
+    }
+
+    /// Puts a row back that was taken out.
+    fn put_back(&mut self, row: usize) {
+        self.starting_at[self.of_row[row].start].push(row);
+    }
+}
+
+/// The parts of rows outside those chosen so far, as a tree of the largest below: the largest and
+/// the first large one are found without looking at all.
+struct Parts {
+    /// node j has the children 2j and 2j + 1; the leaves are the rows
+    tree: Vec<f64>,
+    n_leaves: usize,
+}
+
+impl Parts {
+    fn new(parts: Vec<f64>) -> Self {
+        let n_leaves = parts.len().next_power_of_two();
+        let mut tree = vec![f64::NEG_INFINITY; n_leaves];
+        tree.extend(parts);
+        tree.resize(2 * n_leaves, f64::NEG_INFINITY);
+        for j in (1..n_leaves).rev() {
+            tree[j] = tree[2 * j].max(tree[2 * j + 1]);
+        }
+        Self { tree, n_leaves }
+    }
+
+    fn of(&self, row: usize) -> f64 {
+        self.tree[self.n_leaves + row]
+    }
+
+    /// Returns the largest part; 0 where no row is left.
+    fn largest(&self) -> f64 {
+        self.tree[1].max(0.0)
+    }
+
+    /// Returns the first row whose part is no less than `least`, which one is.
+    fn first_from(&self, least: f64) -> usize {
+        let mut j = 1;
+        while j < self.n_leaves {
+            j = 2 * j + usize::from(self.tree[2 * j] < least || self.tree[2 * j].is_nan());
+        }
+        j - self.n_leaves
+    }
+
+    fn set(&mut self, row: usize, part: f64) {
+        let mut j = self.n_leaves + row;
+        self.tree[j] = part;
+        while j > 1 {
+            j /= 2;
+            self.tree[j] = self.tree[2 * j].max(self.tree[2 * j + 1]);
+        }
+    }
+
+    /// Takes a row out for good.
+    fn take(&mut self, row: usize) {
+        self.set(row, f64::NEG_INFINITY);
+    }
+}
+
 /// Returns the length of a vector, without overflow on the way.
 fn norm(x: &[f64]) -> f64 {
     let largest = x.iter().fold(0.0f64, |m, x| m.max(x.abs()));
@@ -452,7 +556,51 @@ mod tests {
         assert_eq!(of(&[&[f64::NAN, 0.0], &[1.0, 0.0]], 2).independent(), [1]);
     }
 
+    /// The rows that are chosen where all open rows are looked at for each pivot, and their parts.
+    fn chosen_plainly(mut rows: Vec<Vec<f64>>, leading: usize, n: usize) -> (Vec<usize>, Vec<f64>) {
+        let (mut chosen, mut kept): (Vec<usize>, Vec<f64>) = (Vec::new(), Vec::new());
+        while chosen.len() < n {
+            let k = chosen.len();
+            let open: Vec<usize> = (0..leading).filter(|i| !chosen.contains(i)).collect();
+            let part = |i: usize| norm(&rows[i][k..]);
+            let largest = open.iter().map(|&i| part(i)).fold(0.0, f64::max);
+            let large = |i: &&usize| part(**i) >= PREFERENCE_FOR_EARLIER * largest;
+            let Some(&pivot) = open.iter().find(large).filter(|_| largest > TOLERANCE) else {
+                break;
+            };
+            kept.push(part(pivot));
+            let v = reflection(&rows[pivot], k, n);
+            for (i, row) in rows.iter_mut().enumerate() {
+                if !chosen.contains(&i) {
+                    reflect(&v, row);
+                }
+            }
+            chosen.push(pivot);
+        }
+        (chosen, kept)
+    }
+
     proptest! {
+        /// The rows that are found by their spans and by the tree of parts are those that looking
+        /// at all of them finds.
+        #[test]
+        fn rows_are_those_that_looking_at_all_chooses(
+            m in 1usize..14, n in 1usize..12, leading in 0usize..14,
+            numbers in proptest::collection::vec(-1.0f64..1.0, 200),
+            gaps in proptest::collection::vec(0usize..5, 200),
+        ) {
+            let leading = leading.min(m);
+            // half of the entries are zero, and so are some rows
+            let entry = |k: usize| if gaps[k % 200] > 1 { 0.0 } else { numbers[k % 200] };
+            let row = |i: usize| (0..n).map(|j| entry(i * 13 + j)).collect();
+            let rows: Vec<Vec<f64>> = (0..m).map(row).collect();
+            let rank = Rank::scaled(rows.clone(), leading, n, TOLERANCE);
+            let (chosen, kept) = chosen_plainly(rows, leading, n);
+            prop_assert_eq!(&rank.order[..rank.rank], &chosen[..]);
+            let least = kept.into_iter().fold(1.0, f64::min);
+            prop_assert!((rank.margin().0 - least).abs() < 1e-12);
+        }
+
         /// A product of random factors has the rank of the thinner one, and everything that is
         /// claimed of it holds.
         #[test]

@@ -20,18 +20,29 @@ pub fn digits(x: f64) -> String {
 
 /// Numbers that are written with an exponent although their digits are found with leading zeros.
 const LEADING_ZEROS: std::ops::Range<f64> = 1e-5..1e-4;
+/// Magnitude below which digits are found without a signed exponent.
+const SIGNED_EXPONENT: f64 = 1e15;
 
 /// Appends a number with the shortest decimal digits that read back as the same number: `1e300`,
 /// `NaN`, `-inf`; whole numbers have no point.
 pub fn push_digits(x: f64, text: &mut Vec<u8>) {
-    if LEADING_ZEROS.contains(&x.abs()) {
+    // what does not move, or has no such component, is zero: a third of what is written
+    if x.to_bits() == 0 {
+        return text.push(b'0');
+    }
+    let size = x.abs();
+    if LEADING_ZEROS.contains(&size) {
         text.extend_from_slice(format!("{x:?}").as_bytes());
         return;
     }
     let mut buffer = zmij::Buffer::new();
     let digits = buffer.format(x).as_bytes();
     let digits = digits.strip_suffix(b".0").unwrap_or(digits);
-    match digits.iter().rposition(|&c| c == b'+') {
+    let plus = match size < SIGNED_EXPONENT {
+        true => None,
+        false => digits.iter().position(|&c| c == b'+'),
+    };
+    match plus {
         Some(plus) => {
             text.extend_from_slice(&digits[..plus]);
             text.extend_from_slice(&digits[plus + 1..]);
@@ -206,6 +217,39 @@ mod tests {
         for (x, text) in cases {
             assert_eq!(exponential(x, 5), text);
         }
+    }
+
+    #[test]
+    fn digits_have_neither_a_plus_nor_an_idle_point_and_read_back() {
+        let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+        let mut odd = vec![
+            0.0,
+            -0.0,
+            1e15,
+            1e16,
+            1e17,
+            1e300,
+            3e-5,
+            5e-324,
+            f64::INFINITY,
+        ];
+        odd.extend((0..300).map(|k| f64::powi(1.7, k - 150)));
+        for _ in 0..2000 {
+            bits ^= bits << 13;
+            bits ^= bits >> 7;
+            bits ^= bits << 17;
+            odd.push(f64::from_bits(bits));
+        }
+        for x in odd.into_iter().filter(|x| !x.is_nan()) {
+            let text = digits(x);
+            let read: f64 = text.parse().expect("a number");
+            assert_eq!(read.to_bits(), x.to_bits(), "{text}");
+            assert!(!text.contains('+') && !text.ends_with(".0"), "{text}");
+        }
+        assert_eq!(
+            [0.0, -0.0, 12.0, 1e300].map(digits),
+            ["0", "-0", "12", "1e300"]
+        );
     }
 
     #[test]

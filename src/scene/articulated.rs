@@ -17,6 +17,10 @@ use crate::scalar::Scalar;
 use crate::space::{Frame, Mat3, Vec3};
 use std::collections::BTreeMap;
 
+/// Load on a link over the largest on the way to it, below which it is dropped where only sums of
+/// squares are wanted.
+const NEGLIGIBLE: f64 = 1e-16;
+
 /// The factors.
 pub struct ArticulatedFactor<'s, S> {
     scene: &'s Scene,
@@ -220,7 +224,7 @@ impl<'s, S: Scalar> ArticulatedFactor<'s, S> {
 
     /// Returns `L⁻ᵀ x` where it is not known to be zero, by ascending places: only links from those
     /// that x moves inward are visited.
-    pub fn half_sparse(&self, mut x: BTreeMap<usize, S>) -> Vec<(usize, S)> {
+    pub fn half_sparse(&self, x: BTreeMap<usize, S>) -> Vec<(usize, S)> {
         let scene = self.scene;
         let mut loads: BTreeMap<usize, Wrench<S>> = BTreeMap::new();
         for &v in x.keys() {
@@ -230,6 +234,32 @@ impl<'s, S: Scalar> ArticulatedFactor<'s, S> {
                 next = scene.links[l].parent;
             }
         }
+        self.carried_inward(x, loads, |_| true)
+    }
+
+    /// Returns the same but for what is far below rounding: loads fall off quickly from link to
+    /// link, so that the time does not grow with the depth.
+    pub fn half_near(&self, x: BTreeMap<usize, S>) -> Vec<(usize, S)> {
+        let links = x.keys().map(|&v| self.scene.freedoms[self.free[v]].link);
+        let loads = links.map(|l| (l, Wrench::zero())).collect();
+        let mut largest = 0.0_f64;
+        self.carried_inward(x, loads, |load| {
+            let size = load.force.norm2() + load.torque.norm2();
+            let size = size.known().unwrap_or(f64::INFINITY);
+            largest = largest.max(size);
+            // in squares; what is not a number is carried on
+            size.is_nan() || size > NEGLIGIBLE * NEGLIGIBLE * largest
+        })
+    }
+
+    /// Carries x inward from the links of `loads`, as long as a load matters.
+    fn carried_inward(
+        &self,
+        mut x: BTreeMap<usize, S>,
+        mut loads: BTreeMap<usize, Wrench<S>>,
+        mut matters: impl FnMut(&Wrench<S>) -> bool,
+    ) -> Vec<(usize, S)> {
+        let scene = self.scene;
         while let Some((l, mut load)) = loads.pop_last() {
             for &k in self.of_link[l].iter().rev() {
                 let f = &scene.freedoms[k];
@@ -243,8 +273,9 @@ impl<'s, S: Scalar> ArticulatedFactor<'s, S> {
                 load.force += self.u[k].force.times(s);
                 load.torque += self.u[k].torque.times(s);
             }
-            if let Some(on_parent) = scene.links[l].parent.and_then(|p| loads.get_mut(&p)) {
+            if let Some(parent) = scene.links[l].parent.filter(|_| matters(&load)) {
                 let up = to_parent(&self.states[l].X_PL, load);
+                let on_parent = loads.entry(parent).or_insert_with(Wrench::zero);
                 on_parent.force += up.force;
                 on_parent.torque += up.torque;
             }
@@ -268,6 +299,62 @@ impl<'s, S: Scalar> ArticulatedFactor<'s, S> {
                 here.add_along(f, x[v]);
             }
             motion.push(here);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Model;
+    use crate::scene::build::Options;
+    use crate::scene::configuration::Configuration;
+    use crate::scene::equations::Equations;
+    use crate::scene::solve::gram_diagonal;
+    use std::fmt::Write;
+
+    /// A chain of links that hang on each other by hinges of all directions, each a little turned.
+    fn chain(n: usize) -> Model {
+        let mut text = String::from("chain\nPART/1, GROUND\nMARKER/1, PART=1\n");
+        for k in 0..n {
+            let (part, mass) = (k + 2, 1.0 + 0.3 * (k as f64).sin());
+            let (i, j, cm) = (10 * part, 10 * part + 1, 10 * part + 2);
+            let below = if k == 0 { 1 } else { 10 * (part - 1) + 1 };
+            let turn = 40 * (k % 5);
+            let _ = write!(
+                text,
+                "PART/{part}, MASS={mass}, CM={cm}, IP=0.1,0.2,0.15, QG={k},0,0\n\
+                 MARKER/{i}, PART={part}\nMARKER/{cm}, PART={part}, QP=0.5,0.1,0\n\
+                 MARKER/{j}, PART={part}, QP=1,0,0, REULER={turn}D,30D,0\n\
+                 JOINT/{part}, SPHERICAL, I={i}, J={below}\n"
+            );
+        }
+        text.push_str("END\n");
+        Model::from_text(&text).expect("a model")
+    }
+
+    #[test]
+    fn what_is_left_out_of_squares_is_far_below_rounding_and_the_rest_stays_near() {
+        let model = chain(250);
+        let scene = Scene::compile(&model, &Options::default()).expect("a scene");
+        let configuration = Configuration::new(&scene);
+        let mut numbers = vec![0.0; scene.layout.len()];
+        numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
+        let at = Equations::new(scene.within(&configuration), &numbers);
+        let factor = ArticulatedFactor::new(&scene, at.links());
+        let inverse_d = factor.inverse();
+        let n = scene.layout.n_v;
+        for v in (0..n).step_by(7) {
+            let row: BTreeMap<usize, f64> = [(v, 1.0), ((v + 4).min(n - 1), -0.7)].into();
+            let (all, near) = (factor.half_sparse(row.clone()), factor.half_near(row));
+            assert!(
+                near.len() < 300 && near.len() <= all.len(),
+                "{}",
+                near.len()
+            );
+            let squares = [all, near].map(|u| gram_diagonal(&[u], &inverse_d)[0]);
+            let off = (squares[0] - squares[1]).abs();
+            assert!(off <= 4.0 * f64::EPSILON * squares[0], "{v}: {squares:?}");
         }
     }
 }

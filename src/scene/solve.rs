@@ -50,13 +50,16 @@ impl<S: Scalar> Factor<'_, S> {
     /// `L⁻ᵀ g` of a sparse row of G, by ascending places. Only freedoms that carry those of the row
     /// are visited.
     pub fn half_row(&self, row: &[(usize, S)]) -> Vec<(usize, S)> {
-        let mut x: BTreeMap<usize, S> = BTreeMap::new();
-        for &(k, value) in row {
-            *x.entry(k).or_insert_with(S::zero) += value;
-        }
         match self {
-            Factor::Matrix(m) => m.half_sparse(x),
-            Factor::Articulated(m) => m.half_sparse(x),
+            Factor::Matrix(m) => m.half_sparse(summed(row)),
+            Factor::Articulated(m) => m.half_sparse(summed(row)),
+        }
+    }
+    /// The same for sums of squares, but for what is far below rounding in a deep forest.
+    pub fn half_row_near(&self, row: &[(usize, S)], depth: usize) -> Vec<(usize, S)> {
+        match self {
+            Factor::Articulated(m) if depth > DEEP => m.half_near(summed(row)),
+            _ => self.half_row(row),
         }
     }
     /// 1/D
@@ -66,6 +69,18 @@ impl<S: Scalar> Factor<'_, S> {
             Factor::Articulated(m) => m.inverse(),
         }
     }
+}
+
+/// Depth of a forest from which on links far from those of a row are left out of its square.
+const DEEP: usize = 64;
+
+/// Returns what stands in a row for each place.
+fn summed<S: Scalar>(row: &[(usize, S)]) -> BTreeMap<usize, S> {
+    let mut x: BTreeMap<usize, S> = BTreeMap::new();
+    for &(k, value) in row {
+        *x.entry(k).or_insert_with(S::zero) += value;
+    }
+    x
 }
 
 /// Pivots of S smaller than this times the diagonal they started from count as zero.

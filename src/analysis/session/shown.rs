@@ -146,6 +146,10 @@ pub(super) struct Values<'a, 's, S: Scalar> {
     origins: &'a BTreeMap<ElementId, Origin>,
     parts: BTreeMap<ElementId, usize>,
     joint_variables: BTreeMap<(u32, &'static str), usize>,
+    /// states of parts, without and with accelerations
+    states: BTreeMap<(ElementId, bool), MarkerState<S>>,
+    /// motions of centres of mass, by levels
+    bodies: BTreeMap<(ElementId, Option<u32>, usize), [S; 8]>,
     actions: BTreeMap<ElementId, Option<Action<S>>>,
     touches: BTreeMap<u32, [S; 5]>,
     energies: Option<[S; 5]>,
@@ -207,6 +211,8 @@ impl<'a, 's, S: Scalar> Values<'a, 's, S> {
             origins,
             parts: parts.map(|(k, part)| (part.id, k)).collect(),
             joint_variables: variables.map(|(k, v)| ((v.joint, v.name), k)).collect(),
+            states: BTreeMap::new(),
+            bodies: BTreeMap::new(),
             actions: BTreeMap::new(),
             touches: BTreeMap::new(),
             energies: None,
@@ -284,8 +290,10 @@ impl<'a, 's, S: Scalar> Values<'a, 's, S> {
         }
     }
 
-    fn part(&self, id: ElementId, quantity: usize) -> Option<S> {
-        let state = self.at.part(*self.parts.get(&id)?, quantity >= 12);
+    fn part(&mut self, id: ElementId, quantity: usize) -> Option<S> {
+        let (at, part, accelerated) = (self.at, *self.parts.get(&id)?, quantity >= 12);
+        let state = self.states.entry((id, accelerated));
+        let state = *state.or_insert_with(|| at.part(part, accelerated));
         let angle = |m: Measure| {
             let ground = MarkerState::ground();
             kinematic::kinematic(m, &state, &ground, &ground, &ground).unwrap_or_else(S::zero)
@@ -303,7 +311,10 @@ impl<'a, 's, S: Scalar> Values<'a, 's, S> {
     }
 
     /// Returns the eight components of a body's motion at a level.
-    fn body(&self, id: ElementId, centre: Option<u32>, level: usize) -> Option<[S; 8]> {
+    fn body(&mut self, id: ElementId, centre: Option<u32>, level: usize) -> Option<[S; 8]> {
+        if let Some(known) = self.bodies.get(&(id, centre, level)) {
+            return Some(*known);
+        }
         let state = frame_of(self.scene, self.at, &self.parts, id, centre, level == 2)?;
         let (translation, rotation) = match level {
             0 => {
@@ -316,7 +327,9 @@ impl<'a, 's, S: Scalar> Values<'a, 's, S> {
             _ => (state.a_GM, state.alpha_GM),
         };
         let ([x, y, z], [rx, ry, rz]) = (translation.0, rotation.0);
-        Some([x, y, z, size(translation), rx, ry, rz, size(rotation)])
+        let all = [x, y, z, size(translation), rx, ry, rz, size(rotation)];
+        self.bodies.insert((id, centre, level), all);
+        Some(all)
     }
 
     fn slip(&self, friction: u32, component: usize) -> S {

@@ -586,24 +586,21 @@ impl<'s> Search<'s> {
 /// about the two and the turning joints on the ways to what carries both; that of the mechanism
 /// where they all coincide.
 fn loop_size(at: &Equations<'_, f64>, scene: &Scene, i: usize, j: usize) -> f64 {
-    let way = |m: usize| {
-        let mut links = Vec::new();
-        let mut next = scene.markers[m].link;
-        while let Some(link) = next {
-            links.push(link);
-            next = scene.links[link].parent;
-        }
-        links
-    };
-    let ways = [way(i), way(j)];
-    let shared = |k: &usize| ways[0].contains(k) && ways[1].contains(k);
     let turns = |k: &usize| {
         matches!(
             scene.links[*k].motion,
             LinkMotion::Turn { .. } | LinkMotion::Ball { .. }
         )
     };
-    let links = ways.iter().flatten().filter(|k| turns(k) && !shared(k));
+    // links stand behind those that carry them: the ways meet where both are the same
+    let (mut ends, mut between) = ([i, j].map(|m| scene.markers[m].link), Vec::new());
+    while ends[0] != ends[1] {
+        let outer = usize::from(ends[0] < ends[1]);
+        let Some(link) = ends[outer] else { break };
+        between.push(link);
+        ends[outer] = scene.links[link].parent;
+    }
+    let links = between.iter().filter(|k| turns(k));
     let origins = links.map(|&k| at.links()[k].X_GL.position);
     let points = origins.chain([i, j].map(|m| at.marker(m).p_GM));
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);

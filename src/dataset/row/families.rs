@@ -167,6 +167,13 @@ impl<T: Element> Statement for Numbered<T> {
         };
         (self.list)(model).iter().map(to_record).collect()
     }
+
+    fn visit_values(&self, model: &Model, visit: &mut dyn FnMut(Option<u32>, usize, &Value)) {
+        for (&id, element) in (self.list)(model) {
+            let visit = |argument: usize, value: Value| visit(Some(id), argument, &value);
+            visit_given(self.bindings, element, visit);
+        }
+    }
 }
 
 /// A statement without a number: settings of the whole model.
@@ -240,6 +247,13 @@ impl<T: Element> Statement for Single<T> {
             head: Span::default(),
             mistaken: false,
         }]
+    }
+
+    fn visit_values(&self, model: &Model, visit: &mut dyn FnMut(Option<u32>, usize, &Value)) {
+        if let Some(element) = (self.value)(model) {
+            let visit = |argument: usize, value: Value| visit(None, argument, &value);
+            visit_given(self.bindings, &element, visit);
+        }
     }
 }
 
@@ -379,14 +393,25 @@ fn incomplete<T>(bindings: &'static [Binding<T>], record: &Record) -> Vec<Proble
 /// The arguments to write for an element.
 fn given<T>(bindings: &'static [Binding<T>], element: &T) -> Vec<Given> {
     let mut all = Vec::new();
+    visit_given(bindings, element, |argument, value| {
+        all.push(Given {
+            argument,
+            value,
+            span: Span::default(),
+        });
+    });
+    all
+}
+
+/// Visits the arguments to write for an element: their places in the row, and their values.
+fn visit_given<T>(
+    bindings: &'static [Binding<T>],
+    element: &T,
+    mut visit: impl FnMut(usize, Value),
+) {
     for (argument, b) in bindings.iter().enumerate() {
         for value in (b.get)(element, b.argument.name) {
-            all.push(Given {
-                argument,
-                value,
-                span: Span::default(),
-            });
+            visit(argument, value);
         }
     }
-    all
 }

@@ -211,4 +211,8 @@ pub trait Statement: Sync {
     fn reset(&self, _: &mut Model) {}
     /// All elements of this kind as records, for writing.
     fn records(&self, model: &Model) -> Vec<Record>;
+    /// Calls `visit` with the number of an element, an argument's place in the row and its value,
+    /// for all that [`Statement::records`] would give: nothing else of a record is made.
+    /// Statements without elements, or whose elements are only kept, have none.
+    fn visit_values(&self, _: &Model, _: &mut dyn FnMut(Option<u32>, usize, &Value)) {}
 }

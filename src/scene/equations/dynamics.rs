@@ -196,7 +196,9 @@ impl<S: Scalar> Equations<'_, S> {
             .collect();
         match self.mass_factor() {
             Some(factor) => {
-                let u: Vec<_> = g.iter().map(|row| factor.half_row(row)).collect();
+                let depth = self.scene.depth();
+                let u = g.iter().map(|row| factor.half_row_near(row, depth));
+                let u: Vec<_> = u.collect();
                 gram_diagonal(&u, &factor.inverse_d())
             }
             None if self.scene.mode == KINEMATIC => {

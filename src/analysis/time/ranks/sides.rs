@@ -10,8 +10,9 @@
 //! that only come near each other are told from two on one branch, however long the step was. Each
 //! loop (rows that share coordinates) has a B of its own.
 
-use super::passes::{DEPENDENT_THERE, Valley};
+use super::passes::DEPENDENT_THERE;
 use super::select;
+use super::valley::Valley;
 use crate::analysis::system::{RowGradients, System};
 use crate::analysis::time::states::{Cubic, Node};
 use crate::expr::program::{Program, Work};
