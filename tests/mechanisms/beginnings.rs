@@ -296,6 +296,54 @@ fn what_a_line_asks_for_in_vain_at_a_singular_start_is_told_by_name() {
     }
 }
 
+/// A four-bar whose bars all lie along x: crank `a`, coupler `d`, rocker `a`, ground `d`.
+fn flat_parallelogram([a, d]: [f64; 2], of_crank: &str, of_coupler: &str, line: &str) -> String {
+    format!(
+        "MARKER/11, PART=1, QP={d},0,0\nPART/2, MASS=1, CM=20, IP=1,1,1{of_crank}\nMARKER/20, PART=2\n\
+         MARKER/21, PART=2, QP={a},0,0\nPART/3, MASS=1, CM=30, QG={a},0,0, IP=1,1,1{of_coupler}\nMARKER/30, PART=3\n\
+         MARKER/31, PART=3, QP={d},0,0\nPART/4, MASS=1, CM=40, QG={d},0,0, IP=1,1,1\nMARKER/40, PART=4\n\
+         MARKER/41, PART=4, QP={a},0,0\nJOINT/1, REVOLUTE, I=20, J=1\nJOINT/2, REVOLUTE, I=30, J=21\n\
+         JOINT/3, REVOLUTE, I=41, J=31\nJOINT/4, REVOLUTE, I=40, J=11\n{line}"
+    )
+}
+
+/// Where branches meet, rows of first order permit more than any motion can have: what is given is met along a branch.
+#[test]
+fn a_speed_that_is_given_where_branches_meet_is_met_along_one_of_them() {
+    let mut seed: u64 = 12;
+    let columns = ["WZ(20)", "WZ(30)", "WZ(40)"];
+    for k in 0..12 {
+        let mut between = |low: f64, high: f64| {
+            seed = (seed.wrapping_mul(6364136223846793005)).wrapping_add(1442695040888963407);
+            low + (high - low) * (seed >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let ([a, d], w) = ([between(0.3, 2.0), between(0.3, 2.0)], between(0.5, 5.0));
+        // the crossed branch: second order of the rows, ω = 2 w/(1 − d/a)
+        let crossed = 2.0 * w / (1.0 - d / a);
+        let line = format!("! cognate: IC JOINT/1, ANGLE_RATE={w}\n");
+        let (given, twin) = (format!(", WZ={w}"), format!(", WZ={crossed}"));
+        for (text, coupler) in [
+            (flat_parallelogram([a, d], "", "", &line), 0.0),
+            (flat_parallelogram([a, d], &given, "", ""), 0.0),
+            (flat_parallelogram([a, d], &given, &twin, ""), crossed),
+        ] {
+            let mut s = session(&text, &columns, 1e-8);
+            go(&mut s, Analysis::Dynamic, 0.2 / w, 4);
+            let found: Vec<f64> = columns.iter().map(|c| first(&s, c)).collect();
+            let expected = [w, coupler, w + d * coupler / a];
+            for (found, expected) in found.iter().zip(expected) {
+                let off = (found - expected).abs();
+                assert!(
+                    off < 1e-7 * (w + crossed.abs()),
+                    "{k}: {found} for {expected} of {text}"
+                );
+            }
+            let cannot = |w: &String| w.contains("cannot be met");
+            assert!(!s.run.record.warned().iter().any(cannot), "{text}");
+        }
+    }
+}
+
 #[test]
 fn a_rigid_body_is_not_in_another_and_a_part_in_one_alone() {
     for (lines, answer) in [

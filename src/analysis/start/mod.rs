@@ -12,4 +12,5 @@ pub mod leap;
 pub mod misalignment;
 pub mod nearby;
 pub mod placement;
+pub(super) mod tangents;
 pub mod velocities;

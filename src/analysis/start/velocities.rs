@@ -4,6 +4,7 @@ use super::assemble::{
     DEPENDENT, EMPTY, directions, least_change, null_space, numbers, parts, rank_of, rows_at,
 };
 use super::initial_conditions::of_joints;
+use super::tangents::Tangents;
 use crate::analysis::direction::Direction;
 use crate::analysis::quantity::{length, short};
 use crate::analysis::warning::ConditionWarning;
@@ -101,9 +102,26 @@ pub fn velocities(
             continue;
         }
         changed = true;
-        let nearest = own.nearest(here);
+        let (nearest, left) = own.nearest(here);
         for (&k, x) in part.columns.iter().zip(nearest.iter()) {
             v[k] = *x;
+        }
+        // where branches meet, along one of them
+        let tangents = Tangents::new(scene, (t, q, x), own.dependences(&part, scene));
+        let whole = |s: nalgebra::DVectorView<'_, f64>| {
+            let mut all = DVector::zeros(n);
+            part.columns
+                .iter()
+                .zip(s.iter())
+                .for_each(|(&k, x)| all[k] = *x);
+            all
+        };
+        let free: Vec<DVector<f64>> = left.column_iter().map(whole).collect();
+        let own_columns = |v: &DVector<f64>| {
+            DVector::from_iterator(part.columns.len(), part.columns.iter().map(|&k| v[k]))
+        };
+        if let Some(along) = tangents.nearest(&v, &free, |v| own.off(&own_columns(v))) {
+            v = along;
         }
     }
     if !changed {
@@ -238,12 +256,34 @@ impl Part {
         (self.levels.iter()).all(|(a, b)| (b - a * v).amax() == 0.0)
     }
 
+    /// Returns the combinations of rows of `scene` that are zero in first order.
+    fn dependences(&self, part: &Block, scene: Configured<'_>) -> Vec<SparseRow> {
+        let own = |r: usize| part.rows.get(r).copied();
+        let kept = |r: &usize| !scene.configuration.is_loose(*r);
+        let all = rank_of(&self.g).dependent().into_iter();
+        let combination = all.map(|d| {
+            let others = d.combination.iter().map(|&(r, x)| (r, -x));
+            let terms = std::iter::once((d.row, 1.0)).chain(others);
+            let terms = terms.filter_map(|(r, x)| Some((own(r).filter(kept)?, x)));
+            terms.collect::<SparseRow>()
+        });
+        combination.filter(|terms| !terms.is_empty()).collect()
+    }
+
+    /// Returns how far velocities are from those that are not given, but wished to be zero.
+    fn off(&self, v: &DVector<f64>) -> f64 {
+        let [.., (a, b)] = &self.levels;
+        (b - a * v).norm()
+    }
+
     /// Returns the velocities nearest to the given ones that the rows permit, from some that they
-    /// do.
-    fn nearest(&self, mut v: DVector<f64>) -> DVector<f64> {
+    /// do, and the directions that rows and given ones leave free, by columns.
+    fn nearest(&self, mut v: DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let mut space = null_space(&self.g);
+        let mut left = space.clone();
         // each level as well as may be within the freedom that the levels before leave
         for (a, b) in &self.levels {
+            left = space.clone();
             if space.ncols() == 0 || a.nrows() == 0 {
                 continue;
             }
@@ -260,7 +300,7 @@ impl Part {
             v += &space * DVector::from_vec(z);
             space = &space * directions(&rank, space.ncols());
         }
-        v
+        (v, left)
     }
 }
 
