@@ -560,9 +560,12 @@ macro_rules! elementary_functions {
             // dφ = (x dy − y dx)/(x² + y²): the derivative parts of atan2 are those of atan of the
             // quotient that is well conditioned there; the value is the four-quadrant one.
             let (y, x) = (self.value_part(), other.value_part());
+            // The operands are chosen before they are divided: the quotient of the other side is
+            // infinite where y is zero, and a derivative of it times zero no number.
             let steep = x.abs().lt(y.abs());
-            let mut result =
-                Self::choose(steep, || -(other / self).atan(), || (self / other).atan());
+            let quotient = Self::select(steep, other, self) / Self::select(steep, self, other);
+            let angle = quotient.atan();
+            let mut result = Self::select(steep, -angle, angle);
             *result.value_part_mut() = y.atan2(x);
             result
         }

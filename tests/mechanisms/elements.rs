@@ -4,7 +4,7 @@ use crate::running;
 
 use cognate::results::Status;
 use curves::{circle, curve};
-use running::{Analysis, Session, last, off, rest, session, try_to, values};
+use running::{Analysis, Session, go, last, off, rest, session, session_by, try_to, values};
 
 use crate::curve_shapes as curves;
 
@@ -67,6 +67,29 @@ fn a_gcon_of_time_moves_what_it_holds() {
     assert!(off(&s, "DY(20,1)", |t| x(t).powi(2) + t.sin()) < 1e-11);
     assert!(off(&s, "VY(20,1)", |t| 2.0 * x(t) + t.cos()) < 1e-9);
     assert!(off(&s, "ACCY(20,1)", |t| 2.0 - t.sin()) < 1e-9);
+}
+
+/// A wheel that rolls, its angle read by a GCON, which begins at zero: there a quotient of the angle's derivatives is
+/// infinite on the side that is not taken.
+#[test]
+fn an_angle_that_a_gcon_reads_may_be_any_by_every_method() {
+    for angle in [0, 37, 90, 120] {
+        for method in ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"] {
+            for read in ["AZ(20,1)", "ATAN2(DY(21,20), DX(21,20))"] {
+                let text = format!(
+                    "PART/2, MASS=2, CM=20, IP=1,1,0.25, REULER={angle}D,0,0\nMARKER/20, PART=2\n\
+                     MARKER/21, PART=2, QP=1,0,0\nJOINT/1, PLANAR, I=20, J=1\nMARKER/4, PART=1, REULER=90D,90D,0\n\
+                     GCON/1, FUNCTION=DX(20)+0.5*{read}\nSFORCE/1, TRANSLATIONAL, ACTIONONLY, I=20, J=4, FUNCTION=6\n"
+                );
+                let mut s = session_by(&text, &["VX(20)", "WZ(20)"], method, 1e-6);
+                go(&mut s, Analysis::Dynamic, 0.25, 2);
+                for (column, rate) in [("VX(20)", 2.0), ("WZ(20)", -4.0)] {
+                    let off = off(&s, column, |t| rate * t);
+                    assert!(off < 1e-5, "{column} {angle} {method} {read}: {off:e}");
+                }
+            }
+        }
+    }
 }
 
 #[test]

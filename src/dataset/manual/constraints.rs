@@ -134,8 +134,8 @@ pub(super) static PAGES: &[Page] = &[
     Page {
         keyword: "GCON",
         summary: "An equation of your own that stays zero.",
-        text: "It may read displacements, velocities and TIME; what it holds at the start is found by assembly.",
-        equation: "FUNCTION(displacements, velocities, time) = 0",
+        text: "It may read displacements, angles and TIME; what it holds at the start is found by assembly.",
+        equation: "FUNCTION(displacements, angles, time) = 0",
         effect: Effect::Solved,
         notes: &[
             f("I", "Marker on whose part the reaction is told."),
