@@ -58,6 +58,25 @@ fn a_mass_on_the_axis_of_its_hinge_lacks_inertia() {
     assert!(d.message.contains("no inertia (IP)"), "{}", d.message);
 }
 
+/// A spring holds a mass that has no inertia: at rest that does not matter, and then it begins to move.
+#[test]
+fn what_lacks_inertia_is_named_after_statics_and_where_a_joint_is_switched_off() {
+    let text = "PART/2, QG=0,0,-1, MASS=1, CM=20\nMARKER/20, PART=2\n\
+                SPRINGDAMPER/1, TRANSLATIONAL, I=20, J=10, K=100, LENGTH=1\nACCGRAV/KGRAV=-9.81\n";
+    let mut s = session(text, &["DZ(20,10)"]);
+    running::rest(&mut s);
+    let said = mistakes(&mut s, Analysis::Dynamic);
+    assert!(said.iter().all(|d| d.code == "no_mass"), "{said:?}");
+    let held = format!("{text}MARKER/21, PART=2\nJOINT/1, TRANSLATIONAL, I=21, J=10\n");
+    let mut s = session(&held, &[]);
+    go(&mut s, Analysis::Dynamic, 0.1, 1);
+    s.model
+        .inactive
+        .insert(cognate::model::ElementKind::Joint.id(1));
+    let said = mistakes(&mut s, Analysis::Dynamic);
+    assert!(said.iter().all(|d| d.code == "no_mass"), "{said:?}");
+}
+
 #[test]
 fn arms_without_mass_stretched_towards_a_ball_are_refused() {
     // two arms in line with the point mass at their end: turning them against each other moves nothing

@@ -50,6 +50,7 @@ use crate::model::{ElementId, ElementKind, Model};
 use crate::results::{Event, Run, Status};
 use crate::scene::contacts::Shell;
 use crate::scene::equations::Unsupported;
+use crate::scene::unknown::UnknownId;
 use carried::Carried;
 use companion::{Integrated, Pace};
 use kept::{Kept, Starts};
@@ -165,6 +166,8 @@ pub struct Session {
     leap: Option<AssemblyWarning>,
     /// parts whose leaps have been told
     leapt: BTreeSet<ElementId>,
+    /// velocities and number of rows of the scene that was last found to have masses
+    weighed: Option<(Vec<UnknownId>, usize)>,
     activity: Activity,
     shells: Option<Arc<BTreeMap<u32, Result<Shell, String>>>>,
     /// the same at another request, where bars of error are wanted
@@ -228,6 +231,7 @@ impl Session {
             ended_early: None,
             leap: None,
             leapt: BTreeSet::new(),
+            weighed: None,
             activity: Activity::default(),
             shells: None,
             companion: None,

@@ -176,14 +176,19 @@ impl Session {
         }
     }
 
-    /// Checks that nothing moves without mass when dynamics begins.
+    /// Checks that nothing moves without mass when dynamics begins, and when other parts or joints
+    /// move than before.
     pub(super) fn check_masses(
-        &self,
+        &mut self,
         system: &System,
         analysis: Analysis,
     ) -> Result<(), Vec<Diagnostic>> {
-        let begins = analysis == Analysis::Dynamic && self.carried.is_none();
-        if !begins || !is_searched_for_masses(&system.scene) {
+        let scene = &system.scene;
+        if analysis != Analysis::Dynamic || !is_searched_for_masses(scene) {
+            return Ok(());
+        }
+        let weighed = (scene.unknowns.v.clone(), scene.rows.len());
+        if self.carried.is_some() && self.weighed.as_ref() == Some(&weighed) {
             return Ok(());
         }
         let (l, numbers) = (system.scene.layout, &system.numbers);
@@ -196,6 +201,7 @@ impl Session {
             x,
         );
         if massless.is_empty() {
+            self.weighed = Some(weighed);
             Ok(())
         } else {
             Err(massless)
