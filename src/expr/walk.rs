@@ -493,7 +493,33 @@ impl<'a> Walk<'a> {
             format!("{what} has no value{when}: {why}"),
         );
         trouble.help.extend(self.step_in_order(ix, operands));
+        trouble.help.extend(self.stops_in_order(ix, operands));
         trouble
+    }
+
+    /// Writes a BISTOP anew whose upper stop stands before its lower one.
+    fn stops_in_order(&self, ix: NodeIx, operands: &[f64]) -> Option<String> {
+        let Node::Call {
+            callee: Callee::Function(Function::Bistop),
+            ref args,
+        } = *self.ast.node(ix)
+        else {
+            return None;
+        };
+        let (&[x, rate, x1, x2, ref law @ ..], &[_, _, from, to, ..]) = (args.as_slice(), operands)
+        else {
+            return None;
+        };
+        let written = [x, rate, x2, x1].into_iter().chain(law.iter().copied());
+        let written: Vec<String> = written.map(|arg| self.ast.written(arg)).collect();
+        if from > to {
+            let call = written.join(", ");
+            Some(format!("the lower stop stands first: BISTOP({call})"))
+        } else if from == to {
+            Some("two stops at one place leave no way between them: a JOINT or a spring holds it there".into())
+        } else {
+            None
+        }
     }
 
     /// Writes a step anew whose second place stands before its first.

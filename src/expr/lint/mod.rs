@@ -1,15 +1,18 @@
 //! Warnings about what is legal but probably not meant: degrees for radians, operators that bind
-//! otherwise than they look, marks that are read otherwise than they are typed.
+//! otherwise than they look, marks that are read otherwise than they are typed, laws of contact that
+//! nothing can step through.
 //!
 //! Only patterns that are hardly ever right are reported. A warning says the number that was
 //! written and its meaning; its advice says the replacement. The rules stand in a file per kind:
-//! `angles.rs`, `precedence.rs`, `typing.rs`.
+//! `angles.rs`, `precedence.rs`, `typing.rs`, `contact.rs`.
 
 mod angles;
+mod contact;
 mod precedence;
 mod typing;
 
 pub use angles::{degrees_in_angle, degrees_in_speed, reads_as_degrees};
+pub(crate) use contact::{ADVICE as EXPONENT_ADVICE, infinitely_stiff, is_infinitely_stiff};
 
 use super::advice;
 use super::ast::{Ast, Node, NodeIx};
@@ -29,6 +32,7 @@ pub fn lint(ast: &Ast, text: &str) -> Vec<Diagnostic> {
     for ix in 0..ast.nodes.len() as NodeIx {
         doubts.extend(angles::of_node(ast, ix));
         doubts.extend(precedence::of_node(ast, ix, text));
+        doubts.extend(contact::of_node(ast, ix));
     }
     doubts.extend(angles::of_several_axes(ast));
     said(doubts, text)
@@ -148,6 +152,13 @@ mod tests {
             ("doubtful_number", &["1.0D-3", "2*5D+2", "1.D-3*DX(1,2)"]),
             ("doubtful_comment", &["5!*2", "5!", "TIME+3! +2"]),
             (
+                "unlikely_magnitude",
+                &[
+                    "IMPACT(DX(1,2),VX(1,2),1,1E5,0.5,10,0.1)",
+                    "BISTOP(DX(1),VX(1),1,2,1E5,.99,10,0.1)",
+                ],
+            ),
+            (
                 "angles_of_several_axes",
                 &[
                     "AX(1,2)+AY(1,2)",
@@ -200,6 +211,8 @@ mod tests {
             "AX(1,2)+AY(3,2)",
             "AX(1,2)+AX(2,1)",
             "AX(1)+WY(1)",
+            "IMPACT(DX(1,2),VX(1,2),1,1E5,1,10,0.1)",
+            "BISTOP(DX(1),VX(1),1,2,1E5,2.2,0.5,0.1)",
         ] {
             let found = codes(text, Dialect::Function);
             assert!(found.is_empty(), "{text}: {found:?}");

@@ -1,6 +1,7 @@
 //! Contacts: a law that keeps bodies apart.
 
 use super::*;
+use crate::expr::lint::{EXPONENT_ADVICE, infinitely_stiff, is_infinitely_stiff};
 
 /// IMPACT needs STIFFNESS and EXPONENT, and DAMPING needs DMAX: without them the force does not
 /// grow with the depth, or damps from the first touch on.
@@ -11,6 +12,11 @@ pub(super) fn contacts_have_their_law(model: &Model, out: &mut Out) {
         for missing in c.missing() {
             error(out, "missing_argument", who, missing.to_string());
             advise(out, missing.advice());
+        }
+        if is_infinitely_stiff(c.exponent) && c.stiffness != 0.0 {
+            warn(out, "unlikely_magnitude", who, infinitely_stiff(c.exponent));
+            at_argument(out, "EXPONENT");
+            advise(out, EXPONENT_ADVICE);
         }
     }
 }
