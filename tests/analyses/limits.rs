@@ -73,7 +73,8 @@ impl Watch for Impatient {
 #[test]
 fn every_method_lets_its_caller_look_after_a_few_evaluations_of_a_large_model() {
     const LINKS: usize = 40;
-    const LOOKS: u64 = 25;
+    // some twenty of them while it is set up
+    const LOOKS: u64 = 45;
     const MOST_EVALUATIONS_PER_LOOK: u64 = 60;
     let mut chain = String::from("ACCGRAV/JGRAV=-9.81\n");
     for k in 2..2 + LINKS {
@@ -182,4 +183,38 @@ fn a_set_up_that_is_interrupted_keeps_the_rows_of_the_simulation_before() {
     let third = session.simulate(Analysis::Dynamic, 2.0, 10, &mut watch);
     assert_eq!(third.expect("a run"), Status::Completed);
     assert_eq!(session.time(), 2.0);
+}
+
+/// Between any two looks of a set-up lies one program, or one pass over the model: a caller need not wait for the whole.
+#[test]
+fn a_set_up_is_interrupted_between_any_two_of_its_programs() {
+    let text = format!(
+        "{PENDULUM}VARIABLE/1, FUNCTION=DELAY(AZ(3,1),0.1,0)\nSENSOR/1, FUNCTION=AZ(3,1), VALUE=9\n"
+    );
+    let begun = |most: u64| {
+        let mut session = begin(model(&text), "pendulum", Options::default());
+        let mut watch = Impatient { looks: 0, most };
+        let status = session.simulate(Analysis::Dynamic, 0.01, 1, &mut watch);
+        (session, status.expect("a run"), watch.looks)
+    };
+    let (_, status, all) = begun(u64::MAX);
+    assert_eq!(status, Status::Completed);
+    let mut in_set_up = 0;
+    for n in 1..=all {
+        let (mut session, status, looks) = begun(n);
+        assert_eq!((status, looks), (Status::Interrupted, n));
+        if session.run.rows() > 0 {
+            break;
+        }
+        in_set_up += 1;
+        // and the session begins anew
+        let mut patient = Impatient {
+            looks: 0,
+            most: u64::MAX,
+        };
+        let again = session.simulate(Analysis::Dynamic, 0.01, 1, &mut patient);
+        assert_eq!(again.expect("a run"), Status::Completed, "{n}");
+    }
+    // the model, the scene, positions, velocities, some fifteen programs, columns
+    assert!(in_set_up >= 18, "{in_set_up}");
 }

@@ -122,7 +122,7 @@ impl Session {
     ) -> Result<System, Vec<Diagnostic>> {
         let mode = start.mode;
         let phase = Phase::begin();
-        let mut system = self.system(start, v)?;
+        let mut system = self.system(start, v, watch)?;
         self.leap = self.leap_of(&mut system, mode);
         let is_kept = self.carried.is_none() && self.options.keep_start && inputs.is_empty();
         if is_kept && mode == DYNAMIC {
@@ -252,12 +252,19 @@ impl Session {
     }
 
     /// Records the programs and puts the system into its state, with past, samples and sensors.
-    fn system(&self, start: Start, v: Vec<f64>) -> Result<System, Vec<Diagnostic>> {
+    fn system(
+        &mut self,
+        start: Start,
+        v: Vec<f64>,
+        watch: &mut dyn Watch,
+    ) -> Result<System, Vec<Diagnostic>> {
         let (mode, t) = (start.mode, start.t);
         let mut y = start.q;
         y.extend(v);
         y.extend(start.x);
-        let mut system = System::with_hooks(start.scene, start.configuration, &self.hooks)?;
+        let hooks = self.hooks.clone();
+        let look = &mut || self.may_go_on(SetUp::Velocities, watch);
+        let mut system = System::with_hooks(start.scene, start.configuration, &hooks, look)?;
         self.put(&mut system, (t, &y), mode)?;
         Ok(system)
     }

@@ -94,24 +94,26 @@ impl System {
     /// # Errors
     /// Functions that the equations cannot supply.
     pub fn new(scene: Arc<Scene>, configuration: Configuration) -> Result<Self, Error> {
-        Self::with_hooks(scene, configuration, &[])
+        Ok(Self::with_hooks(scene, configuration, &[], &mut || Ok(()))?)
     }
 
-    /// Records the programs of a scene, with the closures that its hooks refer to.
+    /// Records the programs of a scene, with the closures that its hooks refer to; `look` is asked
+    /// between them whether to go on.
     ///
     /// # Errors
-    /// Functions that the equations cannot supply.
-    pub fn with_hooks(
+    /// Functions that the equations cannot supply, and what `look` answers.
+    pub(in crate::analysis) fn with_hooks(
         scene: Arc<Scene>,
         mut configuration: Configuration,
         hooks: &[Hook],
-    ) -> Result<Self, Error> {
+        look: recorded::Look<'_>,
+    ) -> Result<Self, Vec<Diagnostic>> {
         let lent_inertia = recorded::lent_inertia(scene.within(&configuration));
         configuration.elimination = Elimination {
             lent_inertia,
             ..Elimination::default()
         };
-        let recorded = Recorded::new(&scene, &mut configuration, &scene.initial_q, hooks)?;
+        let recorded = Recorded::new(&scene, &mut configuration, &scene.initial_q, hooks, look)?;
         let here = scene.within(&configuration);
         Ok(Self {
             recorded,
@@ -137,7 +139,8 @@ impl System {
         let mut configuration = self.configuration.clone();
         configuration.active = active;
         let q = &self.numbers[self.scene.layout.q()];
-        let mut recorded = Recorded::new(&self.scene, &mut configuration, q, &self.hooks)?;
+        let look = &mut || Ok(());
+        let mut recorded = Recorded::new(&self.scene, &mut configuration, q, &self.hooks, look)?;
         if let Some(implicit) = &self.recorded.implicit {
             let here = self.scene.within(&configuration);
             recorded.make_implicit(here, implicit.formulation())?;

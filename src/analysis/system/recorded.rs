@@ -26,7 +26,7 @@ use crate::scene::articulated::ArticulatedFactor;
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured, Way};
 use crate::scene::elimination;
-use crate::scene::equations::{Equations, KINEMATIC, STATIC, Unsupported};
+use crate::scene::equations::{Equations, KINEMATIC, STATIC};
 use crate::scene::programs;
 use crate::scene::recorder::{self, Recorder};
 use crate::scene::solve;
@@ -72,6 +72,10 @@ pub(in crate::analysis) struct Recorded {
     pub time_events: TimeEvents,
 }
 
+/// Asked between the programs of a recording whether it is to go on; the answer to a caller who does
+/// not want that is an error.
+pub(in crate::analysis) type Look<'a> = &'a mut dyn FnMut() -> Result<(), Vec<Diagnostic>>;
+
 impl Recorded {
     /// Records the programs of a scene, and chooses how accelerations are eliminated: pivots are
     /// measured at the positions `q`, and the shorter rate is kept. The hooks of the scene refer to
@@ -84,28 +88,46 @@ impl Recorded {
         configuration: &mut Configuration,
         q: &[f64],
         hooks: &[Hook],
+        look: Look<'_>,
     ) -> Result<Self, Vec<Diagnostic>> {
         choose_elimination(scene, configuration, q);
-        let together = record_together(scene, configuration).map_err(complaints)?;
+        look()?;
+        let together = record_together(scene, configuration, look)?;
+        look()?;
         configuration.elimination.way = together.way;
         let here = scene.within(configuration);
         let switches = (together.branches.switching.as_ref()).map(|s| &s.switches);
         let readers: Vec<&Program> = std::iter::once(&together.rate).chain(switches).collect();
+        let turns = Turns::new(here, &readers)?;
+        look()?;
+        let loops = AlgebraicLoops::new(here).map_err(complaints)?;
+        look()?;
+        let thickness = ThicknessBounds::new(here, scene.layout.n_y()).map_err(complaints)?;
+        look()?;
+        let external = ExternalInputs::new(here, hooks).map_err(complaints)?;
+        look()?;
+        let sensors = Sensors::new(here).map_err(complaints)?;
+        let samples = Samples::new(here).map_err(complaints)?;
+        look()?;
+        let pulses = Pulses::new(here)?;
+        look()?;
+        let peaks = Peaks::new(here)?;
+        look()?;
         Ok(Self {
-            turns: Turns::new(here, &readers)?,
+            turns,
             rate: Recording::new(together.rate),
             rows: together.rows,
             branches: together.branches,
             time_events: together.time_events,
-            loops: AlgebraicLoops::new(here).map_err(complaints)?,
-            thickness: ThicknessBounds::new(here, scene.layout.n_y()).map_err(complaints)?,
+            loops,
+            thickness,
             derivatives: Derivatives::default(),
             implicit: None,
-            external: ExternalInputs::new(here, hooks).map_err(complaints)?,
-            sensors: Sensors::new(here).map_err(complaints)?,
-            samples: Samples::new(here).map_err(complaints)?,
-            pulses: Pulses::new(here)?,
-            peaks: Peaks::new(here)?,
+            external,
+            sensors,
+            samples,
+            pulses,
+            peaks,
         })
     }
 
@@ -158,7 +180,8 @@ struct Together {
 fn record_together(
     scene: &Scene,
     configuration: &Configuration,
-) -> Result<Together, Vec<Unsupported>> {
+    look: Look<'_>,
+) -> Result<Together, Vec<Diagnostic>> {
     let with = |way: Way| {
         let mut configuration = configuration.clone();
         configuration.elimination.way = way;
@@ -172,7 +195,9 @@ fn record_together(
     let second = with(Way::MassMatrix);
     let builders = [recorder::builder(), recorder::builder()];
     let mut recorder = Recorder::new(scene.within(&first), &builders[0]);
+    look()?;
     let mut rate = programs::rate(recorder.at());
+    look()?;
     if !rows_where_loops_close && scene.depth() <= MAX_DEPTH_OF_MATRIX {
         let other = match scene.loops.is_empty() {
             true => recorder.eliminating(&second),
@@ -180,17 +205,24 @@ fn record_together(
             false => Recorder::new(scene.within(&second), &builders[1]),
         };
         let matrix = programs::rate(other.at());
-        if other.count_operations(&matrix)? <= recorder.count_operations(&rate)? {
+        look()?;
+        let other_count = other.count_operations(&matrix).map_err(complaints)?;
+        if other_count <= recorder.count_operations(&rate).map_err(complaints)? {
             (rate, recorder) = (matrix, other);
         }
     }
-    let rate = recorder.program(&rate)?;
+    let rate = recorder.program(&rate).map_err(complaints)?;
+    look()?;
+    let branches = Branches::new(&recorder).map_err(complaints)?;
+    look()?;
+    let rows = Rows::new(&recorder).map_err(complaints)?;
+    look()?;
     Ok(Together {
         way: recorder.scene().configuration.elimination.way,
         rate,
-        branches: Branches::new(&recorder)?,
-        rows: Rows::new(&recorder)?,
-        time_events: TimeEvents::new(&recorder)?,
+        branches,
+        rows,
+        time_events: TimeEvents::new(&recorder).map_err(complaints)?,
     })
 }
 
