@@ -195,6 +195,29 @@ fn a_spline_read_outside_its_data_is_told_however_few_outputs_there_are() {
     }
 }
 
+/// What a spline reads may be a value of the past: of time, or of where something is.
+#[test]
+fn a_spline_read_at_a_delayed_value_outside_its_data_is_told() {
+    for (at, last) in [
+        ("DELAY(2*TIME,0.25,0)", 3.5),
+        ("DELAY(DX(20,1),0.25,0)", 1.75),
+    ] {
+        for part in [0.8, 1.2] {
+            let text = format!(
+                "{SLIDER}SPLINE/1, X=-9,-1,0,{}, Y=0,0,0,0\n\
+                 SFORCE/1, TRANSLATION, ACTIONONLY, I=20, J=11, FUNCTION=-CUBSPL({at},0,1)\n",
+                part * last
+            );
+            for method in METHODS {
+                let mut s = running::session_by(&text, &["DX(20,1)"], method, 1e-6);
+                running::go(&mut s, Analysis::Dynamic, 2.0, 2);
+                let told = s.run.record.warned().iter().any(|w| w.contains("SPLINE/1"));
+                assert_eq!(told, part < 1.0, "{at} {method} {part}");
+            }
+        }
+    }
+}
+
 /// A rotor that a motion turns by `drive`, another one on it by half of that, about an axis at `tilt` degrees, and a slider
 /// whose force reads a spline over an angle between 0 and `last` rad.
 fn read_over(angle: &str, drive: &str, tilt: f64, last: f64) -> String {

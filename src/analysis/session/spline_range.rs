@@ -6,7 +6,6 @@ use crate::analysis::system::System;
 use crate::analysis::time::counting::Counting;
 use crate::analysis::warning::RunWarning;
 use crate::expr::ast::{Callee, Node};
-use crate::expr::functions::Function;
 use crate::expr::interpolation::Interpolation;
 use crate::expr::program::{Program, Work};
 use crate::model::{ElementId, ElementKind, Family, Formula, Model, Text};
@@ -37,21 +36,6 @@ impl SplineCall {
         let name = format!("{} {}", self.element, ElementKind::Spline.id(self.spline));
         (name, self.at.clone())
     }
-}
-
-/// Returns whether an argument asks for a past that would have to be kept for it alone. Turns of
-/// angles are counted for the function that reads the spline.
-fn keeps_past(at: &Text) -> bool {
-    let delays = |node: &Node| {
-        matches!(
-            node,
-            Node::Call {
-                callee: Callee::Function(Function::Delay),
-                ..
-            }
-        )
-    };
-    at.ast().map_or(true, |ast| ast.nodes.iter().any(delays))
 }
 
 /// Collects the calls of splines in the functions that move the model, each argument once.
@@ -92,7 +76,7 @@ pub(super) fn spline_calls(model: &Model) -> Vec<SplineCall> {
                 at: Text::from(ast.written(x)),
                 range,
             };
-            if !keeps_past(&call.at) && !all.contains(&call) {
+            if !all.contains(&call) {
                 all.push(call);
             }
         }
