@@ -264,7 +264,7 @@ impl Session {
         y.extend(start.x);
         let hooks = self.hooks.clone();
         let look = &mut || self.may_go_on(SetUp::Velocities, watch);
-        let mut system = System::with_hooks(start.scene, start.configuration, &hooks, look)?;
+        let mut system = System::recorded_while(start.scene, start.configuration, &hooks, look)?;
         self.put(&mut system, (t, &y), mode)?;
         Ok(system)
     }

@@ -1,7 +1,8 @@
 //! Velocities at a position where branches meet: along one of them.
 //!
-//! Where rows depend on each other, rows of first order permit more velocities than any motion can
-//! have. Those of a motion satisfy the combinations that are zero in first order in the second, too:
+//! Where rows depend on each other, rows of first order permit more velocities than any motion
+//! can have. Those of a motion satisfy the combinations that are zero in first order in the second,
+//! too:
 //!
 //! ```text
 //! λᵀ G = 0   ⇒   λᵀ g̈ = −λᵀ γ(v) = 0          γ: quadratic in v                             (1)

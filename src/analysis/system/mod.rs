@@ -94,7 +94,24 @@ impl System {
     /// # Errors
     /// Functions that the equations cannot supply.
     pub fn new(scene: Arc<Scene>, configuration: Configuration) -> Result<Self, Error> {
-        Ok(Self::with_hooks(scene, configuration, &[], &mut || Ok(()))?)
+        Self::with_hooks(scene, configuration, &[])
+    }
+
+    /// Records the programs of a scene, with the closures that its hooks refer to.
+    ///
+    /// # Errors
+    /// Functions that the equations cannot supply.
+    pub fn with_hooks(
+        scene: Arc<Scene>,
+        configuration: Configuration,
+        hooks: &[Hook],
+    ) -> Result<Self, Error> {
+        Ok(Self::recorded_while(
+            scene,
+            configuration,
+            hooks,
+            &mut || Ok(()),
+        )?)
     }
 
     /// Records the programs of a scene, with the closures that its hooks refer to; `look` is asked
@@ -102,7 +119,7 @@ impl System {
     ///
     /// # Errors
     /// Functions that the equations cannot supply, and what `look` answers.
-    pub(in crate::analysis) fn with_hooks(
+    pub(in crate::analysis) fn recorded_while(
         scene: Arc<Scene>,
         mut configuration: Configuration,
         hooks: &[Hook],

@@ -72,8 +72,8 @@ pub(in crate::analysis) struct Recorded {
     pub time_events: TimeEvents,
 }
 
-/// Asked between the programs of a recording whether it is to go on; the answer to a caller who does
-/// not want that is an error.
+/// Asked between the programs of a recording whether it is to go on; the answer to a caller who
+/// does not want that is an error.
 pub(in crate::analysis) type Look<'a> = &'a mut dyn FnMut() -> Result<(), Vec<Diagnostic>>;
 
 impl Recorded {

@@ -40,5 +40,5 @@ pub fn infinitely_stiff(exponent: f64) -> String {
     )
 }
 
-/// What is written instead of an exponent below one.
+/// Exponents that are written instead of one below one.
 pub const ADVICE: &str = "1 is a linear spring, 1.5 a sphere after Hertz, 2.2 usual for steel";

@@ -1,6 +1,6 @@
 //! Warnings about what is legal but probably not meant: degrees for radians, operators that bind
-//! otherwise than they look, marks that are read otherwise than they are typed, laws of contact that
-//! nothing can step through.
+//! otherwise than they look, marks that are read otherwise than they are typed, laws of contact
+//! that nothing can step through.
 //!
 //! Only patterns that are hardly ever right are reported. A warning says the number that was
 //! written and its meaning; its advice says the replacement. The rules stand in a file per kind:
@@ -12,6 +12,7 @@ mod precedence;
 mod typing;
 
 pub use angles::{degrees_in_angle, degrees_in_speed, reads_as_degrees};
+#[cfg(feature = "solver")]
 pub(crate) use contact::{ADVICE as EXPONENT_ADVICE, infinitely_stiff, is_infinitely_stiff};
 
 use super::advice;
