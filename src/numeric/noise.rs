@@ -34,7 +34,7 @@
 //! probes.
 
 use super::control::{Weights, worst};
-use super::{Ode, Stats};
+use super::{Ode, Options, Stats};
 
 /// C of (2): the weights of the stages in an error estimate have a root sum of squares of about 2,
 /// and the smallest of three probes underestimates the largest rounding in a sample.
@@ -80,6 +80,9 @@ const DIFFERENCES: [[f64; 2]; 5] = {
         [0.0, UNIT],
     ]
 };
+/// Fewest and most states of a motion at which the rounding of its rates is measured.
+const FEWEST_STATES: usize = 5;
+const MOST_STATES: usize = 24;
 /// Probes of (1) per measurement.
 const PROBES: u64 = 3;
 
@@ -269,6 +272,57 @@ impl Noise {
         let size = worst(both.map(|((a, b), m)| a.abs().min(b.abs()) / m));
         if size.is_finite() { size } else { 0.0 }
     }
+}
+
+/// Returns what rounding of the rates adds up to along a motion in so many steps of any method, as
+/// a part of the magnitudes: δ of (3) at some of its states, times and solutions, in the median. It
+/// walks at random,
+///
+/// ```text
+/// e = δ T/√N                              N steps in the time T
+/// ```
+///
+/// `None`: there are too few states. Jumps of a rate, which differences show as well, are rare
+/// among the states; slopes hardly change over a part [`PROVEN_STRIDE`] of a step.
+pub(crate) fn along<P: Ode + ?Sized>(
+    problem: &mut P,
+    states: &[(f64, &[f64])],
+    (tolerance, steps): (f64, usize),
+) -> Option<f64> {
+    let (&(begin, y), &(end, _)) = (states.first()?, states.last()?);
+    if states.len() < FEWEST_STATES || steps == 0 || end <= begin {
+        return None;
+    }
+    let options = Options {
+        tolerance,
+        ..Options::default()
+    };
+    let mut weights = Weights::new(y.len(), &options);
+    weights.reset(|typical| problem.typical(typical));
+    weights.relate(|relations| problem.relations(relations));
+    states.iter().for_each(|(t, y)| weights.see(*t, y));
+    let mut noise = Noise::new(y.len());
+    let (mut f, mut argument, mut rate) = (y.to_vec(), y.to_vec(), y.to_vec());
+    let tau = (end - begin) / steps as f64 * PROVEN_STRIDE;
+    let mut sizes = Vec::new();
+    for &(t, y) in states.iter().step_by(states.len().div_ceil(MOST_STATES)) {
+        if problem.rate(t, y, &mut f).is_err() {
+            continue;
+        }
+        let at = Probed {
+            t,
+            y,
+            f: &f,
+            weights: &weights,
+        };
+        let room = [&mut argument[..], &mut rate[..]];
+        sizes.push(noise.difference(problem, at, tau, room, &mut Stats::default()));
+    }
+    sizes.sort_unstable_by(f64::total_cmp);
+    let median = sizes
+        .get(sizes.len() / 2)
+        .filter(|_| sizes.len() >= FEWEST_STATES)?;
+    Some(median * (end - begin) / (steps as f64).sqrt())
 }
 
 /// Measures δ of (1); 0 where no probe has a rate.

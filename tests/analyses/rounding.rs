@@ -45,3 +45,41 @@ fn mass_ratios_up_to_1e10_take_few_steps_at_any_request() {
         }
     }
 }
+
+/// Methods of lower order follow the hum in more steps than rounding would need, so that none is asked for in vain; what
+/// rounding adds up to is more than the request all the same.
+#[test]
+fn implicit_methods_take_a_bounded_number_of_steps_and_tell_what_rounding_adds_up_to() {
+    for method in ["RADAU5", "BDF"] {
+        for (ratio, error, tells) in [
+            (1e10, 1e-8, None),
+            (1e10, 1e-10, None),
+            (1e10, 1e-12, Some(true)),
+            (1e8, 1e-6, Some(false)),
+            (1e8, 1e-12, Some(true)),
+            (1e2, 1e-8, Some(false)),
+            (1.0, 1e-8, Some(false)),
+            (1.0, 1e-10, Some(false)),
+        ] {
+            let mut options = options_by(&["DY(30,1)"], method, error);
+            options.max_steps = Some(60_000);
+            let mut s = begin(whole(&double_pendulum(ratio)), "test", options);
+            go(&mut s, Analysis::Dynamic, 0.01, 4);
+            let told = s.run.record.warned();
+            println!("{method} {ratio:e} {error:e}: {told:?}");
+            let told = told.iter().any(|w| w.contains("below rounding"));
+            assert!(
+                tells.is_none_or(|tells| tells == told),
+                "{method} {ratio:e} at {error:e}"
+            );
+            if ratio >= 1e8 {
+                let wrong = off(&s, "DY(30,1)", fallen);
+                // of the largest way that the mechanism makes, 2
+                assert!(
+                    wrong < 2.0 * error + 1e-9,
+                    "{method} {ratio:e} at {error:e}: {wrong:e}"
+                );
+            }
+        }
+    }
+}

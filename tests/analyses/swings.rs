@@ -82,6 +82,45 @@ fn what_is_damped_or_driven_against_damping_loses_no_phase() {
     }
 }
 
+/// Swings of van der Pol's equation, wide and narrow: they excite themselves, come back
+/// to their width, and keep what a push did to their phase.
+#[test]
+fn swings_of_van_der_pol_that_are_no_longer_in_phase_say_so() {
+    let mut found = [0, 0];
+    let cases: [(&str, f64); 2] = [
+        ("+20*(1-DX(2,1)**2)*VX(2,1)", 40.0),
+        ("+4*(1-DX(2,1)**2)*VX(2,1)", 150.0),
+    ];
+    for (force, end) in cases {
+        let place = |method: &str, error: f64| {
+            let mut s = session_by(&oscillator(force), &["DX(2,1)"], method, error);
+            let status = try_to(&mut s, Analysis::Dynamic, end, 2000);
+            let told = is_told(&s);
+            (running::values(&s, "DX(2,1)").to_vec(), told, status)
+        };
+        let (exact, ..) = place("AUTO", 1e-11);
+        let widest = exact.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        for method in METHODS {
+            for exponent in [1, 2, 3] {
+                let (found_at, told, status) = place(method, 10f64.powi(-exponent));
+                if status == Status::Limit {
+                    continue;
+                }
+                let pairs = found_at.iter().zip(&exact).rev().take(40);
+                let lost = pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs())) / widest;
+                println!("{method} 1e-{exponent} {end}: {lost:.1e} {told}");
+                assert!(told || lost < 0.8, "{method} 1e-{exponent} {force}: {lost}");
+                assert!(
+                    !told || lost > 0.02,
+                    "{method} 1e-{exponent} {force}: {lost}"
+                );
+                found[usize::from(told)] += 1;
+            }
+        }
+    }
+    assert!(found[0] > 10 && found[1] > 2, "{found:?}");
+}
+
 #[test]
 fn outputs_change_nothing_about_it() {
     for steps in [1, 50, 700] {

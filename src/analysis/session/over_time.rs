@@ -19,7 +19,9 @@ use crate::analysis::work_limit::ProcessorClock;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::model::ElementKind;
+use crate::numeric::noise;
 use crate::results::{self, Event, Kind, Status};
+use crate::scene::layout::Layout;
 
 impl Session {
     /// Runs a kinematic or dynamic simulation and adds its rows to the run.
@@ -70,15 +72,15 @@ impl Session {
             self.warn_of_growth(seen.looks.growth(system));
         }
         if seen.swings.exceed(settings.error) {
-            self.warn_of_energy(system, &seen, &trajectory);
+            self.warn_of_energy(system, &seen, (&trajectory, settings.error));
         }
+        self.warn_of_rounding((system, &seen), &trajectory, settings.error);
         self.warn_of_splines(seen.readings);
         // what the next simulation begins with
         let last = last.unwrap_or(first);
         self.keep(system, last);
         phase.end(&mut self.run.record.seconds, |s| &mut s.evaluate);
         // the record
-        self.warn_of_rounding(&trajectory, settings.error);
         self.warn_of_stability(&trajectory);
         self.run.record.error = Some(settings.error);
         let simulation = results::Simulation {
@@ -194,7 +196,12 @@ impl Session {
     }
 
     /// Warns where a smaller error was asked for than rounding permits.
-    fn warn_of_rounding(&mut self, trajectory: &Trajectory, error: f64) {
+    fn warn_of_rounding(
+        &mut self,
+        (system, seen): (&System, &Seen),
+        trajectory: &Trajectory,
+        error: f64,
+    ) {
         let (below, steps) = (trajectory.stats.below_rounding, trajectory.stats.steps);
         if below > 0 {
             self.warn(RunWarning::BelowRounding {
@@ -202,6 +209,18 @@ impl Session {
                 below,
                 steps,
             });
+            return;
+        }
+        if error > FINE_REQUEST || steps < FEWEST_STEPS || trajectory.stats.evaluations == 0 {
+            return;
+        }
+        let y = system.scene.layout.y();
+        let rows = seen.looks.rows().iter();
+        let states: Vec<(f64, &[f64])> = rows.map(|r| (r[Layout::TIME], &r[y.clone()])).collect();
+        // what it evaluates leaves nothing behind
+        let reached = noise::along(&mut system.clone(), &states, (error, steps));
+        if let Some(reached) = reached.filter(|reached| *reached > error) {
+            self.warn(RunWarning::RoundingAddsUp { error, reached });
         }
     }
 
@@ -213,14 +232,19 @@ impl Session {
     }
 
     /// Warns where the energy of the motion, or the phase of long swings, is not sure any more.
-    fn warn_of_energy(&mut self, system: &mut System, seen: &Seen, trajectory: &Trajectory) {
+    fn warn_of_energy(
+        &mut self,
+        system: &mut System,
+        seen: &Seen,
+        (trajectory, error): (&Trajectory, f64),
+    ) {
         let flow = &trajectory.energy;
         if flow.imbalance > TOLD_ENERGY * flow.scale {
             let share = flow.imbalance / flow.scale;
             self.warn(RunWarning::EnergyUnsure { share });
         }
         let method = trajectory.methods.last().map_or("", |m| &m.1);
-        let worked = (method, trajectory.stats.steps);
+        let worked = (method, trajectory.stats.steps, error);
         let states = (system, seen.looks.rows());
         if let Some(unsure) = seen.swings.unsure(flow, worked, states) {
             self.warn(RunWarning::PhaseUnsure {
@@ -239,6 +263,10 @@ impl Session {
     }
 }
 
+/// Request from which on rounding may add up to more within any number of steps.
+const FINE_REQUEST: f64 = 1e-7;
+/// Fewest steps whose roundings add up.
+const FEWEST_STEPS: usize = 100;
 /// Error of the balance of energy, over all energy, from which on it is told.
 const TOLD_ENERGY: f64 = 0.2;
 /// Part of the steps, from which on those that stability held short are told.

@@ -93,6 +93,13 @@ pub enum RunWarning {
         /// number of all steps
         steps: usize,
     },
+    /// rounding of the rates adds up to more than the error that is asked for
+    RoundingAddsUp {
+        /// the error
+        error: f64,
+        /// what rounding adds up to, relative to the largest values
+        reached: f64,
+    },
     /// the motion grows without bound
     EnergyGrows {
         /// energy in the end over that of the first quarter
@@ -142,7 +149,9 @@ impl RunWarning {
             RunWarning::Rank(_) => "rank_change",
             RunWarning::Unstable { .. } => "unstable_equilibrium",
             RunWarning::OutsideData { .. } => "outside_data",
-            RunWarning::BelowRounding { .. } => "below_rounding",
+            RunWarning::BelowRounding { .. } | RunWarning::RoundingAddsUp { .. } => {
+                "below_rounding"
+            }
             RunWarning::StabilityLimited { .. } => "stiff",
             RunWarning::EnergyGrows { .. } => "energy_grows",
             RunWarning::EnergyUnsure { .. } => "energy_unsure",
@@ -170,6 +179,7 @@ impl RunWarning {
             | RunWarning::Rank(_)
             | RunWarning::Unstable { .. }
             | RunWarning::BelowRounding { .. }
+            | RunWarning::RoundingAddsUp { .. }
             | RunWarning::EnergyUnsure { .. }
             | RunWarning::PhaseUnsure { .. }
             | RunWarning::StabilityLimited { .. }
@@ -239,6 +249,10 @@ impl RunWarning {
             } => format!(
                 "an error of {error} is below rounding: it was asked for in vain in {below} of {steps} \
                  steps, which are as exact as rounding permits"
+            ),
+            RunWarning::RoundingAddsUp { error, reached } => format!(
+                "an error of {error} is below rounding: that of the accelerations alone adds up to \
+                 about {reached:.0e} of the largest velocities"
             ),
             RunWarning::CompanionEnded { request } => format!(
                 "a run at an error of {request:.1e} ends otherwise than this one: bars of error hold as \
