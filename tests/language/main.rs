@@ -8,6 +8,7 @@ mod expressions;
 
 mod advice;
 mod conformance;
+mod elementary;
 mod engine;
 mod invariants;
 mod language;

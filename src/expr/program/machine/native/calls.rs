@@ -156,10 +156,10 @@ pub(super) extern "sysv64" fn sine_and_cosine(x: f64) -> Pair {
 
 /// Returns the address of the function of one number that is this operation.
 pub(super) fn of_one_number(op: UnaryOp) -> usize {
-    op.callable() as usize
+    op.callable()
 }
 
 /// Returns the address of the function of two numbers that is this operation.
 pub(super) fn of_two_numbers(op: BinaryOp) -> usize {
-    op.callable() as usize
+    op.callable()
 }

@@ -13,13 +13,16 @@
 
 mod assembler;
 mod calls;
+mod columns;
 mod needs;
+mod packed;
 mod translate;
 
 use super::super::code::Core;
 use super::steps::Steps;
 use crate::expr::program::hashing::HashMap;
 use calls::CalledStep;
+pub(in crate::expr::program) use columns::Columns;
 use memmap2::{Mmap, MmapMut};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
