@@ -63,8 +63,16 @@ fn angle(y: f64, x: f64) -> f64 {
     let is_between = n > TAN_OF_SIXTEENTH * d;
     let [sum, sum_rest] = rounded([d, n]);
     let [difference, difference_rest] = rounded([-d, n]);
-    let [n, n_rest] = if is_between { [difference, difference_rest] } else { [n, 0.0] };
-    let [d, d_rest] = if is_between { [sum, sum_rest] } else { [d, 0.0] };
+    let [n, n_rest] = if is_between {
+        [difference, difference_rest]
+    } else {
+        [n, 0.0]
+    };
+    let [d, d_rest] = if is_between {
+        [sum, sum_rest]
+    } else {
+        [d, 0.0]
+    };
     let [q, q_rest] = quotient([n, n_rest], [d, d_rest]);
 
     let z = q * q;
@@ -140,7 +148,11 @@ impl Elementary for Atan2 {
             return angle(of(up), of(across).copysign(x)).copysign(y);
         }
         // lengths of the same ratio, the larger between one and two
-        let first = if most > 1.0 { 0.5f64.powi(100) } else { 2f64.powi(100) };
+        let first = if most > 1.0 {
+            0.5f64.powi(100)
+        } else {
+            2f64.powi(100)
+        };
         let exponent = (most * first).to_bits() >> 52;
         let scale = f64::from_bits((2046 - exponent) << 52);
         let [across, up] = [across, up].map(|x| x * first * scale);

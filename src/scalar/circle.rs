@@ -13,7 +13,8 @@
 //!
 //! S and C are minimax polynomials, with relative errors of 3e-18 and 5e-20. Results are off by at
 //! most 0.8 units in the last place, even where they are nearly zero: `|x| ≤` [`LARGEST_REDUCED`]
-//! keeps n small enough for that. Beyond it the library of the system answers.
+//! keeps n small enough for that. Beyond it the library of the system answers. The tangent is the
+//! quotient of both as sums of two numbers, 0.82 units off at most.
 
 use super::elementary::{Elementary, ROUND_TO_WHOLE, half_square, quotient, rounded};
 use std::f64::consts::FRAC_2_PI;
@@ -158,7 +159,11 @@ impl Elementary for Tan {
         let (d, d2) = (if is_odd { s } else { c }, if is_odd { s2 } else { c2 });
         let [tangent, rest] = quotient([n, n2], [d, d2]);
         let tangent = tangent + rest;
-        if x.abs() < TANGENT_IS_ANGLE { x } else { tangent }
+        if x.abs() < TANGENT_IS_ANGLE {
+            x
+        } else {
+            tangent
+        }
     }
     #[cold]
     fn far(x: f64) -> f64 {

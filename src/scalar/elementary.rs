@@ -7,9 +7,10 @@
 //! multiply, divide and take roots and nothing else, each rounded once: the bits are the same on
 //! every machine. Fused products are not used, because not every machine has them.
 //!
-//! Beside the last place of a result its rounding error counts at most half a unit; the formulas
-//! carry the lost parts of what they subtract and multiply, so that everything before the last
-//! rounding adds about a twentieth. Tests compare with correctly rounded functions.
+//! The last rounding of a result costs half a unit in the last place. The formulas carry the lost
+//! parts of what they subtract and multiply, so that what comes before it adds a twentieth
+//! (exponentials, logarithms, powers) to a third (tangents). Tests compare with correctly rounded
+//! functions.
 
 /// A function with a formula without branches for the usual arguments.
 pub(super) trait Elementary {

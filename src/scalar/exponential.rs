@@ -170,8 +170,14 @@ fn twice_hyperbolic(x: f64, lowered: u64) -> [[f64; 2]; 2] {
     let [sine, sine_rest] = rounded([e, -f]);
     let [cosine, cosine_rest] = rounded([e, f]);
     [
-        [sine, (sine_rest + (e_rest - f_rest)) + (both * s + excess * c)],
-        [cosine, (cosine_rest + (e_rest + f_rest)) + (both * c + excess * s)],
+        [
+            sine,
+            (sine_rest + (e_rest - f_rest)) + (both * s + excess * c),
+        ],
+        [
+            cosine,
+            (cosine_rest + (e_rest + f_rest)) + (both * c + excess * s),
+        ],
     ]
 }
 

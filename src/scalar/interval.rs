@@ -306,7 +306,9 @@ impl Scalar for Interval {
         match exponent.known() {
             Some(e) if e.trunc() == e && e.abs() < f64::from(i32::MAX) => self.powi(e as i32),
             // a negative base has no such power
-            Some(_) => self.inside(0.0, f64::INFINITY).corners(exponent, Scalar::powf),
+            Some(_) => self
+                .inside(0.0, f64::INFINITY)
+                .corners(exponent, Scalar::powf),
             None if self.lo > 0.0 => self.corners(exponent, Scalar::powf),
             None => Self::ANY,
         }

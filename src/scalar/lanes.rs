@@ -50,7 +50,9 @@ impl<const N: usize> Lanes<N> {
     /// Returns the power by the logarithm, also for exponents that have a shorter way.
     #[inline(always)]
     pub(crate) fn general_power(self, exponent: Self) -> Self {
-        Self(several::<logarithm::Power, N>(|k| [self.0[k], exponent.0[k]]))
+        Self(several::<logarithm::Power, N>(|k| {
+            [self.0[k], exponent.0[k]]
+        }))
     }
     #[inline(always)]
     fn sum(self, b: Self) -> Self {

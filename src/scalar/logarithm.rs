@@ -54,7 +54,10 @@ const WHOLE: f64 = 4_503_599_627_370_496.0;
 static PIECES: [Piece; 128] = pieces();
 
 const fn pieces() -> [Piece; 128] {
-    let one = Piece { reciprocal: 1.0, ln: Twice(0.0, 0.0) };
+    let one = Piece {
+        reciprocal: 1.0,
+        ln: Twice(0.0, 0.0),
+    };
     let mut pieces = [one; 128];
     let mut i = 0;
     while i < 128 {
@@ -66,7 +69,10 @@ const fn pieces() -> [Piece; 128] {
             let ln = ln_of_short(reciprocal);
             let round = 1.5 * WHOLE / (1u64 << 42) as f64;
             let first = (round - ln.0) - round;
-            pieces[i] = Piece { reciprocal, ln: Twice(first, (-ln.0 - first) - ln.1) };
+            pieces[i] = Piece {
+                reciprocal,
+                ln: Twice(first, (-ln.0 - first) - ln.1),
+            };
         }
         i += 1;
     }
@@ -80,7 +86,9 @@ const fn ln_of_short(x: f64) -> Twice {
     let mut sum = Twice(0.0, 0.0);
     let mut k = 61;
     while k > 0 {
-        sum = sum.times(z).plus(Twice(2.0, 0.0).over(Twice(k as f64, 0.0)));
+        sum = sum
+            .times(z)
+            .plus(Twice(2.0, 0.0).over(Twice(k as f64, 0.0)));
         k -= 2;
     }
     sum.times(s)
@@ -98,7 +106,8 @@ fn ln_as_sum(x: f64, more: f64) -> [f64; 2] {
     // f = upper m/c − 1 + rest of m/c, rounded, and what that loses
     let upper = upper_half(m);
     let (a, b) = (upper * reciprocal - 1.0, (m - upper) * reciprocal);
-    let Twice(f, f_rest) = Twice::sum(a, b);
+    // where the second is the larger, both are so small that the sum is exact
+    let [f, f_rest] = rounded([a, b]);
     let [half, half_rest] = half_square(f);
     let f2 = f * f;
     let l = (L[0] + f * L[1]) + f2 * ((L[2] + f * L[3]) + f2 * (L[4] + f * L[5]));
@@ -107,7 +116,10 @@ fn ln_as_sum(x: f64, more: f64) -> [f64; 2] {
     let [sum, lost] = rounded([constant, f]);
     let [sum, lost_too] = rounded([sum, -half]);
     let rest = (k * LN_2_PARTS[1] + ln.1) + (lost + lost_too);
-    [sum, rest + ((f_rest - (half_rest + f_rest * f)) + (f * f2) * l)]
+    [
+        sum,
+        rest + ((f_rest - (half_rest + f_rest * f)) + (f * f2) * l),
+    ]
 }
 
 /// Returns `1` for a positive normal number.

@@ -7,6 +7,7 @@ mod counting;
 mod expressions;
 
 mod advice;
+mod batches;
 mod conformance;
 mod elementary;
 mod engine;

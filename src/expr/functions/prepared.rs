@@ -164,9 +164,7 @@ pub(crate) fn impact<S: Power>(x: S, x_dot: S, p: &[f64; 6], exponent: Exponent)
     let cmax = S::constant(cmax);
     let d = S::constant(d);
     let per_depth = S::constant(per_depth);
-    contact::impact(x, x_dot, x1, k, cmax, d, per_depth, |p| {
-        p.power(exponent, e)
-    })
+    contact::impact(x, x_dot, x1, k, cmax, d, per_depth, Known(exponent, e))
 }
 
 /// Evaluates BISTOP.
@@ -179,9 +177,17 @@ pub(crate) fn bistop<S: Power>(x: S, x_dot: S, p: &[f64; 7], exponent: Exponent)
     let cmax = S::constant(cmax);
     let d = S::constant(d);
     let per_depth = S::constant(per_depth);
-    contact::bistop(x, x_dot, x1, x2, k, cmax, d, per_depth, |p| {
-        p.power(exponent, e)
-    })
+    contact::bistop(x, x_dot, x1, x2, k, cmax, d, per_depth, Known(exponent, e))
+}
+
+/// A power whose exponent is known.
+struct Known(Exponent, f64);
+
+impl<S: Power> contact::Elastic<S> for Known {
+    #[inline(always)]
+    fn of(self, p: S) -> S {
+        p.power(self.0, self.1)
+    }
 }
 
 /// A number that can be raised to a power whose kind is known.
@@ -211,7 +217,11 @@ impl<const N: usize> Power for Lanes<N> {
             Exponent::Other => {
                 let is_positive = Self::zero().lt(self);
                 let base = Self::select(is_positive, self, Self::one());
-                Self::select(is_positive, base.general_power(Self::constant(e)), Self::zero())
+                Self::select(
+                    is_positive,
+                    base.general_power(Self::constant(e)),
+                    Self::zero(),
+                )
             }
         }
     }

@@ -13,7 +13,7 @@ use super::run::Program;
 use crate::diagnostic::{Cause, Diagnostic, Error};
 use crate::expr::functions::Function;
 use crate::expr::functions::prepared::{self, Prepared};
-use crate::expr::functions::step::{cubic, quintic};
+use crate::expr::functions::step::{cubic, haversine, quintic};
 use crate::scalar::{Lanes, Scalar};
 use std::sync::Arc;
 
@@ -156,7 +156,9 @@ impl Program {
             .collect();
         // from the end, where it is known which registers are read behind a piece
         let mut is_needed = vec![false; core.size as usize];
-        core.outputs.iter().for_each(|&r| is_needed[r as usize] = true);
+        core.outputs
+            .iter()
+            .for_each(|&r| is_needed[r as usize] = true);
         let mut loops: Vec<Option<Columns>> = Vec::with_capacity(pieces.len());
         for piece in pieces.iter().rev() {
             let mut wanted: Vec<u32> = piece.iter().map(|i| i.to).collect();
@@ -496,7 +498,7 @@ fn prepared(what: Prepared, p: &[f64], [a, b, to]: [u32; 3], r: &mut [Block]) {
             each!(r, to = |x = a| prepared::step_everywhere(x, &[x0, x1, h0, h1, l, h], quintic));
         }
         (Prepared::Havsin, &[x0, x1, h0, h1, l, h]) => {
-            each!(r, to = |x = a| prepared::havsin(x, &[x0, x1, h0, h1, l, h]));
+            each!(r, to = |x = a| prepared::step_everywhere(x, &[x0, x1, h0, h1, l, h], haversine));
         }
         (Prepared::Poly, _) => each!(r, to = |x = a| prepared::poly(x, p)),
         (Prepared::Cheby, _) => each!(r, to = |x = a| prepared::cheby(x, p)),

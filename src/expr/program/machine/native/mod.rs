@@ -15,7 +15,6 @@ mod assembler;
 mod calls;
 mod columns;
 mod needs;
-mod packed;
 mod translate;
 
 use super::super::code::Core;

@@ -74,6 +74,11 @@ impl Packed {
         Self { code, top }
     }
 
+    /// Begins the loop; what stands before it is done once.
+    pub(super) fn begin_loop(&mut self) {
+        self.top = self.code.len();
+    }
+
     /// Ends the loop and the function.
     pub(super) fn finish(mut self) -> Vec<u8> {
         // rax += 32; on while rax < rdx

@@ -1,205 +1,19 @@
-//! Plain arithmetic over columns, translated into one loop that keeps its values in registers.
-//!
-//! A batch performs instruction after instruction over blocks of points. Where instructions that
-//! the processor has follow each other, their values need not go through memory: this loop loads
-//! each column once and stores what others read. The operations and their order are those of
-//! [`Core::perform`], to the bit.
-//!
-//! # Safety
-//!
-//! The code reads and writes slots of the frame, whose length is asserted, and as many numbers of
-//! each column as it is told; [`Columns::run`] says what the caller promises.
+//! The translation of plain arithmetic into a loop: which values stay in registers, and the
+//! instructions of each operation.
 
-use super::super::super::batch::{BLOCK, Block};
-use super::super::super::code::{Code, Core, Instruction};
-use super::super::super::operation::{BinaryOp, Comparison, UnaryOp};
+use super::super::super::super::code::{Code, Core, Instruction};
+use super::super::super::super::operation::{BinaryOp, Comparison, UnaryOp};
+use super::EXTRAS;
 use super::packed::{Operation, Packed, Relation, Source, Ymm};
-use super::Mapping;
 use crate::expr::functions::Function;
-
-/// Numbers that an instruction works on.
-const POINTS_AT_ONCE: usize = 4;
-/// Most columns of a loop.
-const MOST_COLUMNS: usize = 64;
-/// Most instructions of a loop, so that it stays in the cache of decoded instructions.
-const MOST_INSTRUCTIONS: usize = 1000;
-
-/// A function that goes through columns; the length is in bytes.
-type Entry = unsafe extern "sysv64" fn(frame: *mut f64, columns: *const *mut f64, length: usize);
 
 /// Registers that hold values; the rest are for one instruction.
 const N_HOLDING: u8 = 13;
+/// Most registers of one instruction: four operands and the result.
+const MOST_OF_ONE: usize = 5;
 const MASK: Ymm = 13;
 const ONE: Ymm = 14;
 const OTHER: Ymm = 15;
-
-/// Numbers that stand in the frame behind the registers of the program.
-const EXTRAS: [f64; 5] = [-0.0, f64::from_bits(!(1 << 63)), 1.0, f64::NAN, 0.0];
-
-/// A loop over columns.
-pub(in crate::expr::program) struct Columns {
-    entry: Entry,
-    /// registers of the program that are read, each a column
-    inputs: Vec<u32>,
-    /// registers that are written, each a column; they stand behind the inputs
-    outputs: Vec<u32>,
-    n_registers: usize,
-    frame_length: usize,
-    _code: Mapping,
-}
-
-impl std::fmt::Debug for Columns {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Columns")
-            .field("inputs", &self.inputs)
-            .field("outputs", &self.outputs)
-            .finish()
-    }
-}
-
-impl Columns {
-    /// Returns whether the processor has instructions for it.
-    pub(in crate::expr::program) fn can(instruction: &Instruction) -> bool {
-        use BinaryOp::{Add, Along, And, Div, Kept, Mul, Or, Sub};
-        match instruction.code {
-            Code::Unary(op) => {
-                matches!(op, UnaryOp::Neg | UnaryOp::Abs | UnaryOp::Sqrt | UnaryOp::Not)
-            }
-            Code::Binary(op) => matches!(op, Add | Sub | Mul | Div | And | Or | Along | Kept),
-            Code::Whole(_)
-            | Code::HalfPower(_)
-            | Code::Compare(_)
-            | Code::Select
-            | Code::CompareSelect(_)
-            | Code::If
-            | Code::Call(Function::Max | Function::Min, 2) => true,
-            Code::Lookup { .. } | Code::Call(..) | Code::Partial(..) => false,
-        }
-    }
-
-    /// Returns the numbers of a frame for these loops: constants, and room.
-    pub(in crate::expr::program) fn frame(core: &Core) -> Vec<f64> {
-        let mut frame = vec![f64::NAN; (core.size as usize + EXTRAS.len()) * POINTS_AT_ONCE];
-        let (registers, extras) = frame.split_at_mut(core.size as usize * POINTS_AT_ONCE);
-        for (slots, constants) in [(registers, &core.constants[..]), (extras, &EXTRAS)] {
-            for (slot, c) in slots.chunks_exact_mut(POINTS_AT_ONCE).zip(constants) {
-                slot.fill(*c);
-            }
-        }
-        frame
-    }
-
-    /// Translates instructions that [`Columns::can`]; `wanted` are the registers of which others
-    /// read what these instructions leave. `None` where the machine has no such instructions, or
-    /// there are too many columns.
-    #[allow(unsafe_code)]
-    pub(in crate::expr::program) fn of(
-        core: &Core,
-        code: &[Instruction],
-        wanted: &[u32],
-    ) -> Option<Self> {
-        if !is_x86_feature_detected!("avx2")
-            || code.len() > MOST_INSTRUCTIONS
-            || core.size as usize >= super::MOST_NUMBERS / 8
-        {
-            return None;
-        }
-        let (bytes, inputs) = translate(core, code, wanted);
-        if inputs.len() + wanted.len() > MOST_COLUMNS {
-            return None;
-        }
-        let code = Mapping::of(&bytes)?;
-        // SAFETY: the translation is a function of this kind, and `code` keeps it where it is
-        let entry = unsafe { std::mem::transmute::<*const u8, Entry>(code.0.as_ptr()) };
-        Some(Self {
-            entry,
-            inputs,
-            outputs: wanted.to_vec(),
-            n_registers: core.size as usize,
-            frame_length: (core.size as usize + EXTRAS.len()) * POINTS_AT_ONCE,
-            _code: code,
-        })
-    }
-
-    /// Goes through blocks, one a register of the program.
-    #[allow(unsafe_code)]
-    pub(in crate::expr::program) fn over_blocks(&self, frame: &mut [f64], blocks: &mut [Block]) {
-        assert!(blocks.len() >= self.n_registers, "a block for each register");
-        let first = blocks.as_mut_ptr().cast::<f64>();
-        let mut columns = [std::ptr::null_mut(); MOST_COLUMNS];
-        for (column, &r) in columns.iter_mut().zip(self.inputs.iter().chain(&self.outputs)) {
-            // SAFETY: there is such a block, and before it blocks of nothing but numbers
-            *column = unsafe { first.add(r as usize * BLOCK) };
-        }
-        // SAFETY: each column is a block
-        unsafe { self.run(frame, &columns, BLOCK) }
-    }
-
-    /// Goes through columns of any length: those of the inputs, and those of the outputs, which
-    /// are of one length.
-    #[allow(unsafe_code)]
-    pub(in crate::expr::program) fn over_columns<'a>(
-        &self,
-        frame: &mut [f64],
-        inputs: impl Iterator<Item = &'a [f64]>,
-        outputs: &mut [&mut [f64]],
-    ) {
-        let n = outputs.first().map_or(0, |out| out.len());
-        let most = n - n % POINTS_AT_ONCE;
-        let mut columns = [std::ptr::null_mut(); MOST_COLUMNS];
-        // what is left at the end, in columns of their own
-        let mut ends = [[0.0; POINTS_AT_ONCE]; MOST_COLUMNS];
-        let mut n_columns = 0;
-        for column in inputs {
-            assert!(column.len() >= n, "columns as long as the outputs");
-            ends[n_columns][..n - most].copy_from_slice(&column[most..n]);
-            // inputs are read only
-            columns[n_columns] = column.as_ptr().cast_mut();
-            n_columns += 1;
-        }
-        for column in outputs.iter_mut() {
-            assert!(column.len() >= n, "outputs of one length");
-            columns[n_columns] = column.as_mut_ptr();
-            n_columns += 1;
-        }
-        let n_columns_of_loop = self.inputs.len() + self.outputs.len();
-        assert_eq!(n_columns, n_columns_of_loop, "as many columns as the loop has");
-        // SAFETY: each column has `n` numbers; outputs are borrowed for writing, so they are apart
-        unsafe { self.run(frame, &columns, most) }
-        if most < n {
-            let columns = ends.each_mut().map(|end| end.as_mut_ptr());
-            // SAFETY: each column is an array of four
-            unsafe { self.run(frame, &columns, POINTS_AT_ONCE) }
-            for (column, end) in outputs.iter_mut().zip(&ends[self.inputs.len()..]) {
-                column[most..n].copy_from_slice(&end[..n - most]);
-            }
-        }
-    }
-
-    /// Goes through `n` points, a multiple of four.
-    ///
-    /// # Safety
-    ///
-    /// `columns` are the addresses of the columns of the inputs, then of the outputs. Each has `n`
-    /// numbers, which may be read and, those of outputs, written. An output is no part of another
-    /// column, but may be one.
-    #[allow(unsafe_code)]
-    unsafe fn run(&self, frame: &mut [f64], columns: &[*mut f64; MOST_COLUMNS], n: usize) {
-        assert!(
-            frame.len() >= self.frame_length && n % POINTS_AT_ONCE == 0,
-            "a frame and points as the loop was made for"
-        );
-        if n > 0 {
-            // SAFETY: the code stays inside the frame, and the caller promises the rest
-            unsafe { (self.entry)(frame.as_mut_ptr(), columns.as_ptr(), n * size_of::<f64>()) }
-        }
-    }
-
-    /// Returns the registers whose columns are read, in their order.
-    pub(in crate::expr::program) fn inputs(&self) -> &[u32] {
-        &self.inputs
-    }
-}
 
 /// The value is not needed any more.
 const NEVER: u32 = u32::MAX;
@@ -207,7 +21,9 @@ const NEVER: u32 = u32::MAX;
 /// Returns for each instruction when its operands, in their order, and its result are needed next.
 fn needs(core: &Core, code: &[Instruction], wanted: &[u32]) -> Vec<([u32; 4], u32)> {
     let mut next = vec![NEVER; core.size as usize];
-    wanted.iter().for_each(|&r| next[r as usize] = code.len() as u32);
+    wanted
+        .iter()
+        .for_each(|&r| next[r as usize] = code.len() as u32);
     let mut needs = vec![([NEVER; 4], NEVER); code.len()];
     for (k, instruction) in code.iter().enumerate().rev() {
         let result = std::mem::replace(&mut next[instruction.to as usize], NEVER);
@@ -241,12 +57,14 @@ struct Translation<'a> {
     held: [Option<(u32, u32)>; N_HOLDING as usize],
     homes: Vec<Home>,
     inputs: Vec<u32>,
+    /// vector registers before this one change their values; the rest hold constants for good
+    n_free: u8,
     /// vector registers of the instruction at hand
     pinned: u16,
 }
 
 /// Returns the code, and the registers whose columns it loads.
-fn translate(core: &Core, code: &[Instruction], wanted: &[u32]) -> (Vec<u8>, Vec<u32>) {
+pub(super) fn translate(core: &Core, code: &[Instruction], wanted: &[u32]) -> (Vec<u8>, Vec<u32>) {
     let needs = needs(core, code, wanted);
     let mut homes = vec![Home::Nowhere; core.size as usize];
     homes[..core.constants.len()].fill(Home::Frame);
@@ -272,8 +90,11 @@ fn translate(core: &Core, code: &[Instruction], wanted: &[u32]) -> (Vec<u8>, Vec
         held: [None; N_HOLDING as usize],
         homes,
         inputs,
+        n_free: N_HOLDING,
         pinned: 0,
     };
+    translation.keep_constants(code);
+    translation.packed.begin_loop();
     for (instruction, (operands, result)) in code.iter().zip(&needs) {
         translation.instruction(instruction, operands, *result);
     }
@@ -286,6 +107,38 @@ fn translate(core: &Core, code: &[Instruction], wanted: &[u32]) -> (Vec<u8>, Vec
 }
 
 impl Translation<'_> {
+    /// Loads constants before the loop, as many as other values leave room for.
+    fn keep_constants(&mut self, code: &[Instruction]) {
+        let n_constants = self.core.constants.len() as u32;
+        let (mut constants, mut others) = (Vec::new(), Vec::new());
+        let mut note = |r: u32| {
+            let used = if r < n_constants {
+                &mut constants
+            } else {
+                &mut others
+            };
+            // beyond these there is no room
+            if used.len() < usize::from(N_HOLDING) && !used.contains(&r) {
+                used.push(r);
+            }
+        };
+        for instruction in code {
+            self.core.operands(instruction, &mut note);
+            note(instruction.to);
+        }
+        // constants that stay outside need places while an instruction reads them
+        let room = usize::from(N_HOLDING) - others.len();
+        let n_kept = match constants.len() <= room {
+            true => room,
+            false => room.saturating_sub(MOST_OF_ONE),
+        };
+        for &r in constants.iter().take(n_kept) {
+            self.n_free -= 1;
+            self.packed.load(self.n_free, Source::Slot(r));
+            self.held[self.n_free as usize] = Some((r, 0));
+        }
+    }
+
     fn extra(&self, number: f64) -> Source {
         let is_it = |c: &f64| c.to_bits() == number.to_bits();
         let k = EXTRAS.iter().position(is_it).unwrap_or(0);
@@ -379,7 +232,8 @@ impl Translation<'_> {
     fn truth(&mut self, x: Ymm, mask: Ymm) {
         let zero = self.extra(0.0);
         self.packed.load(OTHER, zero);
-        self.packed.compare(Relation::Less, mask, OTHER, Source::Ymm(x));
+        self.packed
+            .compare(Relation::Less, mask, OTHER, Source::Ymm(x));
     }
 
     /// Emits one of three numbers by the sign of a selector; no number where that is none.
@@ -389,7 +243,8 @@ impl Translation<'_> {
         self.packed.compare(Relation::Equal, MASK, selector, zero);
         self.packed.blend(OTHER, MASK, at_zero, OTHER);
         self.packed.load(MASK, zero);
-        self.packed.compare(Relation::Less, MASK, MASK, Source::Ymm(selector));
+        self.packed
+            .compare(Relation::Less, MASK, MASK, Source::Ymm(selector));
         self.packed.blend(OTHER, MASK, positive, OTHER);
         self.packed.compare(Relation::Less, MASK, selector, zero);
         self.packed.blend(to, MASK, negative, OTHER);
@@ -400,7 +255,8 @@ impl Translation<'_> {
     fn extreme(&mut self, to: Ymm, [a, b]: [Ymm; 2], [less, more]: [Ymm; 2]) {
         let y = Source::Ymm;
         self.packed.operate(Operation::Add, OTHER, a, y(b));
-        self.packed.compare(Relation::LessOrEqual, MASK, more, y(less));
+        self.packed
+            .compare(Relation::LessOrEqual, MASK, more, y(less));
         self.packed.blend(OTHER, MASK, y(a), OTHER);
         self.packed.compare(Relation::Less, MASK, less, y(more));
         self.packed.blend(to, MASK, y(b), OTHER);
@@ -416,7 +272,8 @@ impl Translation<'_> {
             if rest & 1 == 1 {
                 product = Some(match product {
                     Some(product) => {
-                        self.packed.operate(Multiply, ONE, product, Source::Ymm(square));
+                        self.packed
+                            .operate(Multiply, ONE, product, Source::Ymm(square));
                         ONE
                     }
                     // one times a number; its place must outlast the next square
@@ -429,7 +286,8 @@ impl Translation<'_> {
             }
             rest >>= 1;
             if rest > 0 {
-                self.packed.operate(Multiply, OTHER, square, Source::Ymm(square));
+                self.packed
+                    .operate(Multiply, OTHER, square, Source::Ymm(square));
                 square = OTHER;
             }
         }
@@ -466,7 +324,7 @@ impl Translation<'_> {
 
     /// Notes when a value is needed next.
     fn needed_next(&mut self, r: u32, next: u32) {
-        if let Some(x) = self.place(r) {
+        if let Some(x) = self.place(r).filter(|&x| x < self.n_free) {
             self.held[x as usize] = (next != NEVER).then_some((r, next));
         }
     }
@@ -485,11 +343,11 @@ impl Translation<'_> {
     /// Returns a vector register that holds nothing, if need be one whose value is needed last.
     fn free(&mut self) -> Ymm {
         let is_free = |&x: &Ymm| self.held[x as usize].is_none();
-        if let Some(x) = (0..N_HOLDING).find(is_free) {
+        if let Some(x) = (0..self.n_free).find(is_free) {
             return x;
         }
         let next = |&x: &Ymm| self.held[x as usize].map(|(_, next)| next);
-        let x = (0..N_HOLDING)
+        let x = (0..self.n_free)
             .filter(|x| self.pinned & 1 << x == 0)
             .max_by_key(next)
             .unwrap_or_else(|| unreachable!("an instruction has few operands"));
