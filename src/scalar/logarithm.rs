@@ -122,7 +122,11 @@ fn ln_as_sum(x: f64, more: f64) -> [f64; 2] {
     ]
 }
 
-/// Returns `1` for a positive normal number.
+/// Returns whether a number is positive and normal.
+#[expect(
+    clippy::manual_range_contains,
+    reason = "no short cut: this must become vector instructions"
+)]
 #[inline(always)]
 fn is_positive_and_normal(x: f64) -> bool {
     (x >= f64::MIN_POSITIVE) & (x <= f64::MAX)

@@ -195,7 +195,7 @@ impl Columns {
     #[allow(unsafe_code)]
     unsafe fn run(&self, frame: &mut [f64], columns: &[*mut f64; MOST_COLUMNS], n: usize) {
         assert!(
-            frame.len() >= self.frame_length && n % POINTS_AT_ONCE == 0,
+            frame.len() >= self.frame_length && n.is_multiple_of(POINTS_AT_ONCE),
             "a frame and points as the loop was made for"
         );
         if n > 0 {
