@@ -66,8 +66,9 @@ const fn powers() -> [Twice; 64] {
     powers
 }
 
-/// Returns a number near one and, in its last twelve bits, the power of two that goes with it: together
-/// the exponential of `x + more`, where `more` is a small part of a unit in the last place of `x`.
+/// Returns a number near one and, in its last twelve bits, the power of two that goes with it:
+/// together the exponential of `x + more`, where `more` is a small part of a unit in the last place
+/// of `x`.
 #[inline(always)]
 fn parts(x: f64, more: f64) -> (f64, u64) {
     let shifted = x * STEPS_PER_UNIT + ROUND_TO_WHOLE;

@@ -3,8 +3,9 @@
 //! A register is a block of 128 numbers; the working set of an expression stays in the innermost
 //! cache, and the inner loops are what compilers turn into vector instructions. Where instructions
 //! that the processor has follow each other, and it is one that we know, they are translated into
-//! a loop of their own that keeps values in registers. The same code is compiled for several sets of vector instructions; which one runs is decided when the batch is
-//! made. The result of each point is that of [`Program::run`], to the bit.
+//! a loop of their own that keeps values in registers. The same code is compiled for several sets
+//! of vector instructions; which one runs is decided when the batch is made. The result of each
+//! point is that of [`Program::run`], to the bit.
 
 use super::code::{Code, Instruction, gathered, partial};
 use super::machine::Columns;

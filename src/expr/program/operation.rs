@@ -179,7 +179,7 @@ macro_rules! define_unary {
                 }
             }
 
-            /// Returns the address of the operation as a function of one number, for generated code.
+            /// Returns the address of a function of one number, for generated code.
             #[cfg(all(feature = "native", target_arch = "x86_64", target_os = "linux", not(miri)))]
             pub(super) fn callable(self) -> usize {
                 match self {
@@ -226,7 +226,7 @@ macro_rules! define_binary {
                 }
             }
 
-            /// Returns the address of the operation as a function of two numbers, for generated code.
+            /// Returns the address of a function of two numbers, for generated code.
             #[cfg(all(feature = "native", target_arch = "x86_64", target_os = "linux", not(miri)))]
             pub(super) fn callable(self) -> usize {
                 match self {
