@@ -1,4 +1,4 @@
-//! Sine and cosine of plain numbers.
+//! Sine, cosine and tangent of plain numbers.
 //!
 //! Our own, because a mechanism evaluates little else: the library of the system takes four times
 //! as long (it saves and restores the rounding mode at each call), and its last bits differ from
@@ -13,16 +13,15 @@
 //!
 //! S and C are minimax polynomials, with relative errors of 3e-18 and 5e-20. Results are off by at
 //! most 0.8 units in the last place, even where they are nearly zero: `|x| ≤` [`LARGEST_REDUCED`]
-//! keeps n small enough for that. Beyond it the library of the system answers.
+//! keeps n small enough for that. Beyond it the library of the system answers. The tangent is the
+//! quotient of both as sums of two numbers, 0.82 units off at most.
 
+use super::elementary::{Elementary, ROUND_TO_WHOLE, half_square, quotient, rounded};
 use std::f64::consts::FRAC_2_PI;
 
 /// Largest angle, in rad, that is reduced here: n has thirteen bits, and r all its digits even at
 /// the doubles nearest to multiples of π/2.
 const LARGEST_REDUCED: f64 = 12_000.0;
-
-/// 1.5 · 2⁵²: added to a number it rounds it to a whole one, whose bits end the sum.
-const ROUND_TO_WHOLE: f64 = 6_755_399_441_055_744.0;
 
 /// π/2 in three parts: 33 bits, the next 33, the rest.
 const HALF_PI_PARTS: [f64; 3] = [
@@ -53,6 +52,9 @@ const C: [f64; 6] = [
 
 /// Angle, in rad, below which the sine is the angle itself, signed zeros included.
 const SINE_IS_ANGLE: f64 = 1e-8;
+
+/// Angle, in rad, below which the tangent is the angle itself.
+const TANGENT_IS_ANGLE: f64 = 1e-9;
 
 /// Returns sine and cosine of an angle in radians.
 #[inline]
@@ -86,9 +88,9 @@ pub fn of_several<const N: usize>(x: [f64; N]) -> ([f64; N], [f64; N]) {
     (sines, cosines)
 }
 
-/// Reduces and evaluates without any branch, so that several angles run in parallel.
+/// Returns n, with its last bits at the end, and r + ρ.
 #[inline(always)]
-fn near(x: f64) -> (f64, f64) {
+fn reduced(x: f64) -> (u64, [f64; 2]) {
     let shifted = x * FRAC_2_PI + ROUND_TO_WHOLE;
     let n = shifted - ROUND_TO_WHOLE;
     let [first, second, rest] = HALF_PI_PARTS;
@@ -99,26 +101,74 @@ fn near(x: f64) -> (f64, f64) {
     let lost = (a - (difference - part)) - (b + part);
     let less = n * rest - lost;
     let r = difference - less;
-    let rho = (difference - r) - less;
+    (shifted.to_bits(), [r, (difference - r) - less])
+}
 
+/// Returns S and C at z = r².
+#[inline(always)]
+fn polynomials(z: f64) -> [f64; 2] {
+    let z2 = z * z;
+    [
+        (S[0] + z * S[1]) + z2 * ((S[2] + z * S[3]) + z2 * (S[4] + z * S[5])),
+        (C[0] + z * C[1]) + z2 * ((C[2] + z * C[3]) + z2 * (C[4] + z * C[5])),
+    ]
+}
+
+/// Reduces and evaluates without any branch, so that several angles run in parallel.
+#[inline(always)]
+fn near(x: f64) -> (f64, f64) {
+    let (quarters, [r, rho]) = reduced(x);
     let z = r * r;
     let half = 0.5 * z;
-    let z2 = z * z;
-    let s = (S[0] + z * S[1]) + z2 * ((S[2] + z * S[3]) + z2 * (S[4] + z * S[5]));
+    let [s, c] = polynomials(z);
     let sine = r + (r * (z * s) + rho * (1.0 - half));
-    let c = (C[0] + z * C[1]) + z2 * ((C[2] + z * C[3]) + z2 * (C[4] + z * C[5]));
     let most = 1.0 - half;
-    let cosine = most + (((1.0 - most) - half) + (z2 * c - r * rho));
+    let cosine = most + (((1.0 - most) - half) + (z * z * c - r * rho));
     let sine = if x.abs() < SINE_IS_ANGLE { x } else { sine };
 
     // quarter turns: exchange sine and cosine where odd, set signs by the second bit
-    let quarters = shifted.to_bits();
     let odd = 0u64.wrapping_sub(quarters & 1);
     let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
     let change = (sine ^ cosine) & odd;
     let sine = sine ^ change ^ (quarters & 2) << 62;
     let cosine = cosine ^ change ^ (quarters.wrapping_add(1) & 2) << 62;
     (f64::from_bits(sine), f64::from_bits(cosine))
+}
+
+/// The tangent.
+pub(super) struct Tan;
+
+impl Elementary for Tan {
+    type Argument = f64;
+    #[inline(always)]
+    fn is_usual(x: f64) -> bool {
+        x.abs() <= LARGEST_REDUCED
+    }
+    /// The quotient of sine and cosine, both as sums.
+    #[inline(always)]
+    fn near(x: f64) -> f64 {
+        let (quarters, [r, rho]) = reduced(x);
+        let z = r * r;
+        let [s, c] = polynomials(z);
+        let [half, half_rest] = half_square(r);
+        let [s, s2] = rounded([r, r * (z * s) + rho * (1.0 - half)]);
+        let [most, lost] = rounded([1.0, -half]);
+        let [c, c2] = rounded([most, lost + ((z * z * c - r * rho) - half_rest)]);
+        let is_odd = quarters & 1 == 1;
+        let (n, n2) = (if is_odd { -c } else { s }, if is_odd { -c2 } else { s2 });
+        let (d, d2) = (if is_odd { s } else { c }, if is_odd { s2 } else { c2 });
+        let [tangent, rest] = quotient([n, n2], [d, d2]);
+        let tangent = tangent + rest;
+        if x.abs() < TANGENT_IS_ANGLE {
+            x
+        } else {
+            tangent
+        }
+    }
+    #[cold]
+    fn far(x: f64) -> f64 {
+        f64::tan(x)
+    }
 }
 
 #[cfg(test)]

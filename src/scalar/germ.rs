@@ -550,7 +550,7 @@ impl Scalar for Germ {
         )
     }
     fn atan(self) -> Self {
-        self.through_derivative(f64::atan, |x| (Self::one() + x * x).power(-1.0))
+        self.through_derivative(Scalar::atan, |x| (Self::one() + x * x).power(-1.0))
     }
     fn atan2(self, x: Self) -> Self {
         let y = self;
@@ -587,7 +587,7 @@ impl Scalar for Germ {
         self.compose(|k, x| turning(k, [x.cosh(), x.sinh(), x.cosh(), x.sinh()]))
     }
     fn tanh(self) -> Self {
-        self.through_derivative(f64::tanh, |x| x.cosh().power(-2.0))
+        self.through_derivative(Scalar::tanh, |x| x.cosh().power(-2.0))
     }
     fn exp(self) -> Self {
         self.compose(|k, x| x.exp() / factorial(k))
@@ -596,7 +596,7 @@ impl Scalar for Germ {
         if self.sign().is_none_or(|s| s <= 0.0) {
             return Self::undefined();
         }
-        self.through_derivative(f64::ln, |x| x.power(-1.0))
+        self.through_derivative(Scalar::ln, |x| x.power(-1.0))
     }
     fn log10(self) -> Self {
         self.ln().scaled(std::f64::consts::LOG10_E)

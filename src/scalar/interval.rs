@@ -246,15 +246,15 @@ impl Scalar for Interval {
         self.inside(0.0, f64::INFINITY).monotone(f64::sqrt)
     }
     fn sin(self) -> Self {
-        self.wave(FRAC_PI_2, f64::sin)
+        self.wave(FRAC_PI_2, Scalar::sin)
     }
     fn cos(self) -> Self {
-        self.wave(0.0, f64::cos)
+        self.wave(0.0, Scalar::cos)
     }
     fn tan(self) -> Self {
         let branch = |x: f64| (x / PI + 0.5).floor();
         if self.hi - self.lo < PI && branch(self.lo) == branch(self.hi) {
-            self.monotone(f64::tan)
+            self.monotone(Scalar::tan)
         } else if self.is_none() {
             self
         } else {
@@ -262,37 +262,37 @@ impl Scalar for Interval {
         }
     }
     fn asin(self) -> Self {
-        self.inside(-1.0, 1.0).monotone(f64::asin)
+        self.inside(-1.0, 1.0).monotone(Scalar::asin)
     }
     fn acos(self) -> Self {
-        self.inside(-1.0, 1.0).monotone(f64::acos)
+        self.inside(-1.0, 1.0).monotone(Scalar::acos)
     }
     fn atan(self) -> Self {
-        self.monotone(f64::atan)
+        self.monotone(Scalar::atan)
     }
     fn atan2(self, x: Self) -> Self {
         if self.holds(0.0) && x.lo <= 0.0 {
             return Self::between(-PI, PI);
         }
-        self.corners(x, f64::atan2)
+        self.corners(x, Scalar::atan2)
     }
     fn sinh(self) -> Self {
-        self.monotone(f64::sinh)
+        self.monotone(Scalar::sinh)
     }
     fn cosh(self) -> Self {
-        self.abs().monotone(f64::cosh)
+        self.abs().monotone(Scalar::cosh)
     }
     fn tanh(self) -> Self {
-        self.monotone(f64::tanh)
+        self.monotone(Scalar::tanh)
     }
     fn exp(self) -> Self {
-        self.monotone(f64::exp)
+        self.monotone(Scalar::exp)
     }
     fn ln(self) -> Self {
-        self.inside(0.0, f64::INFINITY).monotone(f64::ln)
+        self.inside(0.0, f64::INFINITY).monotone(Scalar::ln)
     }
     fn log10(self) -> Self {
-        self.inside(0.0, f64::INFINITY).monotone(f64::log10)
+        self.inside(0.0, f64::INFINITY).monotone(Scalar::log10)
     }
     fn powi(self, n: i32) -> Self {
         if n < 0 {
@@ -300,14 +300,16 @@ impl Scalar for Interval {
             return Self::one() / (self.powi(-(n + 1)) * self);
         }
         let base = if n % 2 == 0 { self.abs() } else { self };
-        base.monotone(|x| f64::powi(x, n))
+        base.monotone(|x| Scalar::powi(x, n))
     }
     fn powf(self, exponent: Self) -> Self {
         match exponent.known() {
             Some(e) if e.trunc() == e && e.abs() < f64::from(i32::MAX) => self.powi(e as i32),
             // a negative base has no such power
-            Some(_) => self.inside(0.0, f64::INFINITY).corners(exponent, f64::powf),
-            None if self.lo > 0.0 => self.corners(exponent, f64::powf),
+            Some(_) => self
+                .inside(0.0, f64::INFINITY)
+                .corners(exponent, Scalar::powf),
+            None if self.lo > 0.0 => self.corners(exponent, Scalar::powf),
             None => Self::ANY,
         }
     }

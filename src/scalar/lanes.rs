@@ -1,10 +1,12 @@
 //! A batch: several samples of one number, evaluated side by side.
 
-use super::circle;
-use super::{Mask, Scalar, operators};
+use super::elementary::several;
+use super::{Exponent, Mask, Scalar, operators};
+use super::{arc, circle, exponential, logarithm};
 
 /// `N` samples; every operation works on all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(transparent)]
 pub struct Lanes<const N: usize>(pub [f64; N]);
 
 impl<const N: usize> Mask for [bool; N] {
@@ -45,6 +47,13 @@ impl<const N: usize> Lanes<N> {
         }
         Self(result)
     }
+    /// Returns the power by the logarithm, also for exponents that have a shorter way.
+    #[inline(always)]
+    pub(crate) fn general_power(self, exponent: Self) -> Self {
+        Self(several::<logarithm::Power, N>(|k| {
+            [self.0[k], exponent.0[k]]
+        }))
+    }
     #[inline(always)]
     fn sum(self, b: Self) -> Self {
         self.zip(b, |x, y| x + y)
@@ -68,6 +77,16 @@ impl<const N: usize> Lanes<N> {
 }
 
 operators!([const N: usize] Lanes<N>);
+
+/// Implements functions of one number by their formulas.
+macro_rules! formulas {
+    ($($name:ident $function:path;)*) => { $(
+        #[inline(always)]
+        fn $name(self) -> Self {
+            Self(several::<$function, N>(|k| self.0[k]))
+        }
+    )* };
+}
 
 /// Implements functions of one number lane by lane.
 macro_rules! lane_by_lane {
@@ -109,7 +128,19 @@ impl<const N: usize> Scalar for Lanes<N> {
             if mask[k] { yes.0[k] } else { no.0[k] }
         }))
     }
-    lane_by_lane!(sqrt tan asin acos atan sinh cosh tanh exp ln log10 abs trunc round floor);
+    lane_by_lane!(sqrt abs trunc round floor);
+    formulas! {
+        tan circle::Tan;
+        asin arc::Asin;
+        acos arc::Acos;
+        atan arc::Atan;
+        sinh exponential::Sinh;
+        cosh exponential::Cosh;
+        tanh exponential::Tanh;
+        exp exponential::Exp;
+        ln logarithm::Ln;
+        log10 logarithm::Log10;
+    }
     #[inline(always)]
     fn sin(self) -> Self {
         self.sin_cos().0
@@ -125,7 +156,7 @@ impl<const N: usize> Scalar for Lanes<N> {
     }
     #[inline(always)]
     fn atan2(self, other: Self) -> Self {
-        self.zip(other, f64::atan2)
+        Self(several::<arc::Atan2, N>(|k| [self.0[k], other.0[k]]))
     }
     #[inline(always)]
     fn powi(self, n: i32) -> Self {
@@ -150,7 +181,12 @@ impl<const N: usize> Scalar for Lanes<N> {
     }
     #[inline(always)]
     fn powf(self, exponent: Self) -> Self {
-        self.zip(exponent, Scalar::powf)
+        match exponent.known().map(Exponent::of) {
+            Some(Exponent::Whole(n)) => self.powi(n),
+            Some(Exponent::Half(n)) => self.powi(n) * self.sqrt(),
+            Some(Exponent::Other) => self.general_power(exponent),
+            None => self.zip(exponent, Scalar::powf),
+        }
     }
     #[inline(always)]
     fn rem(self, other: Self) -> Self {

@@ -9,12 +9,16 @@
 //! number. So the same lines run where a "number" is many samples at once, or a node of a program
 //! that is being recorded.
 
+mod arc;
 mod circle;
 mod dual;
+mod elementary;
+mod exponential;
 mod germ;
 mod interval;
 mod jet;
 mod lanes;
+mod logarithm;
 mod power;
 
 pub use dual::Dual;
@@ -24,6 +28,7 @@ pub use jet::Jet;
 pub use lanes::Lanes;
 pub use power::Exponent;
 
+use elementary::one;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -262,47 +267,47 @@ impl Scalar for f64 {
     }
     #[inline(always)]
     fn tan(self) -> f64 {
-        f64::tan(self)
+        one::<circle::Tan>(self)
     }
     #[inline(always)]
     fn asin(self) -> f64 {
-        f64::asin(self)
+        one::<arc::Asin>(self)
     }
     #[inline(always)]
     fn acos(self) -> f64 {
-        f64::acos(self)
+        one::<arc::Acos>(self)
     }
     #[inline(always)]
     fn atan(self) -> f64 {
-        f64::atan(self)
+        one::<arc::Atan>(self)
     }
     #[inline(always)]
     fn atan2(self, other: f64) -> f64 {
-        f64::atan2(self, other)
+        one::<arc::Atan2>([self, other])
     }
     #[inline(always)]
     fn sinh(self) -> f64 {
-        f64::sinh(self)
+        one::<exponential::Sinh>(self)
     }
     #[inline(always)]
     fn cosh(self) -> f64 {
-        f64::cosh(self)
+        one::<exponential::Cosh>(self)
     }
     #[inline(always)]
     fn tanh(self) -> f64 {
-        f64::tanh(self)
+        one::<exponential::Tanh>(self)
     }
     #[inline(always)]
     fn exp(self) -> f64 {
-        f64::exp(self)
+        one::<exponential::Exp>(self)
     }
     #[inline(always)]
     fn ln(self) -> f64 {
-        f64::ln(self)
+        one::<logarithm::Ln>(self)
     }
     #[inline(always)]
     fn log10(self) -> f64 {
-        f64::log10(self)
+        one::<logarithm::Log10>(self)
     }
     #[inline]
     fn powi(self, n: i32) -> f64 {

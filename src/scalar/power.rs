@@ -5,6 +5,9 @@
 //! exponent, not on its origin, so that a compiled program, which knows a constant exponent
 //! beforehand, yields the same bits as everything else.
 
+use super::elementary::one;
+use super::logarithm::Power;
+
 /// The kind of an exponent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exponent {
@@ -59,13 +62,19 @@ pub(super) fn whole(x: f64, n: i32) -> f64 {
     if n < 0 { 1.0 / product } else { product }
 }
 
+/// Returns `x` to any power, by its logarithm.
+#[inline]
+pub(super) fn general(x: f64, exponent: f64) -> f64 {
+    one::<Power>([x, exponent])
+}
+
 /// Returns `x` to any power.
 #[inline]
 pub(super) fn real(x: f64, exponent: f64) -> f64 {
     match Exponent::of(exponent) {
         Exponent::Whole(n) => whole(x, n),
         Exponent::Half(n) => whole(x, n) * x.sqrt(),
-        Exponent::Other => x.powf(exponent),
+        Exponent::Other => general(x, exponent),
     }
 }
 

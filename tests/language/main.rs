@@ -7,7 +7,9 @@ mod counting;
 mod expressions;
 
 mod advice;
+mod batches;
 mod conformance;
+mod elementary;
 mod engine;
 mod invariants;
 mod language;

@@ -11,6 +11,30 @@
 use super::step::cubic;
 use crate::scalar::{Mask, Scalar};
 
+/// The power of a penetration: a closure, or a type of its own whose code becomes part of the loop
+/// around it, which is compiled for the vector instructions of the machine.
+pub trait Elastic<S> {
+    /// Returns `pᵉ`.
+    fn of(self, p: S) -> S;
+}
+
+impl<S, F: FnOnce(S) -> S> Elastic<S> for F {
+    #[inline(always)]
+    fn of(self, p: S) -> S {
+        self(p)
+    }
+}
+
+/// The power with any exponent.
+pub struct AnyExponent<S>(pub S);
+
+impl<S: Scalar> Elastic<S> for AnyExponent<S> {
+    #[inline(always)]
+    fn of(self, p: S) -> S {
+        p.powf(self.0)
+    }
+}
+
 /// Evaluates `IMPACT(x, x_dot, x1, k, e, cmax, d)`; `per_depth` is 1/d.
 #[allow(clippy::too_many_arguments)]
 #[inline(always)]
@@ -22,7 +46,7 @@ pub fn impact<S: Scalar>(
     cmax: S,
     d: S,
     per_depth: S,
-    power: impl FnOnce(S) -> S,
+    power: impl Elastic<S>,
 ) -> S {
     let free = x1.le(x);
     if free.known() == Some(true) {
@@ -43,7 +67,7 @@ pub fn bistop<S: Scalar>(
     cmax: S,
     d: S,
     per_depth: S,
-    power: impl FnOnce(S) -> S,
+    power: impl Elastic<S>,
 ) -> S {
     let free = x1.le(x).and(x.le(x2));
     if free.known() == Some(true) {
@@ -77,9 +101,9 @@ fn contact<S: Scalar>(
     cmax: S,
     d: S,
     per_depth: S,
-    power: impl FnOnce(S) -> S,
+    power: impl Elastic<S>,
 ) -> S {
-    let elastic = k * power(p);
+    let elastic = k * power.of(p);
     let c = S::choose(d.le(p), || cmax, || cmax * cubic(p * per_depth));
     elastic + c * p_dot
 }

@@ -164,9 +164,7 @@ pub(crate) fn impact<S: Power>(x: S, x_dot: S, p: &[f64; 6], exponent: Exponent)
     let cmax = S::constant(cmax);
     let d = S::constant(d);
     let per_depth = S::constant(per_depth);
-    contact::impact(x, x_dot, x1, k, cmax, d, per_depth, |p| {
-        p.power(exponent, e)
-    })
+    contact::impact(x, x_dot, x1, k, cmax, d, per_depth, Known(exponent, e))
 }
 
 /// Evaluates BISTOP.
@@ -179,9 +177,17 @@ pub(crate) fn bistop<S: Power>(x: S, x_dot: S, p: &[f64; 7], exponent: Exponent)
     let cmax = S::constant(cmax);
     let d = S::constant(d);
     let per_depth = S::constant(per_depth);
-    contact::bistop(x, x_dot, x1, x2, k, cmax, d, per_depth, |p| {
-        p.power(exponent, e)
-    })
+    contact::bistop(x, x_dot, x1, x2, k, cmax, d, per_depth, Known(exponent, e))
+}
+
+/// A power whose exponent is known.
+struct Known(Exponent, f64);
+
+impl<S: Power> contact::Elastic<S> for Known {
+    #[inline(always)]
+    fn of(self, p: S) -> S {
+        p.power(self.0, self.1)
+    }
 }
 
 /// A number that can be raised to a power whose kind is known.
@@ -196,7 +202,7 @@ impl Power for f64 {
         match exponent {
             Exponent::Whole(n) => Scalar::powi(self, n),
             Exponent::Half(n) => Scalar::powi(self, n) * self.sqrt(),
-            Exponent::Other => f64::powf(self, e),
+            Exponent::Other => Scalar::powf(self, e),
         }
     }
 }
@@ -209,11 +215,13 @@ impl<const N: usize> Power for Lanes<N> {
             Exponent::Half(n) => Scalar::powi(self, n) * Scalar::sqrt(self),
             // the base of a contact is positive; samples without contact do not count
             Exponent::Other => {
-                let mut result = self.0;
-                for x in &mut result {
-                    *x = if *x > 0.0 { f64::powf(*x, e) } else { 0.0 };
-                }
-                Self(result)
+                let is_positive = Self::zero().lt(self);
+                let base = Self::select(is_positive, self, Self::one());
+                Self::select(
+                    is_positive,
+                    base.general_power(Self::constant(e)),
+                    Self::zero(),
+                )
             }
         }
     }
@@ -227,7 +235,7 @@ impl<const N: usize> Power for Dual<N> {
         let slope = match exponent {
             Exponent::Whole(n) => e * Scalar::powi(self.re, n - 1),
             Exponent::Half(n) if n > 0 => e * self.re.power(Exponent::Half(n - 1), e - 1.0),
-            Exponent::Half(_) => e * f64::powf(self.re, e - 1.0),
+            Exponent::Half(_) => e * Scalar::powf(self.re, e - 1.0),
             Exponent::Other => e * (value / self.re),
         };
         let mut eps = self.eps;

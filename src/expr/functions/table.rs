@@ -8,7 +8,7 @@
 use super::step::{cubic, haversine, quintic, step, sweep_turns};
 use super::{
     Continuity, Example, Family, Further, Row,
-    contact::{bistop, impact},
+    contact::{AnyExponent, bistop, impact},
     series,
 };
 use crate::expr::ast::Dialect;
@@ -285,7 +285,7 @@ functions! {
     Bistop "BISTOP" (x: "position between the stops, as DX(i, j)", x_dot: "rate of x, as VX(i, j)", x1: "lower stop: below it the force is positive", x2: "upper stop: above it the force is negative", k: "stiffness of the stops, not negative", e: "exponent of the penetration, positive; above 1 for a smooth beginning", cmax: "largest damping, not negative", d: "penetration at which the damping is cmax, positive") C0
     "x < x1: max(k (x1-x)^e - step(x, x1-d, cmax, x1, 0) x_dot, 0);  x > x2: min(-k (x-x2)^e - step(x, x2, 0, x2+d, cmax) x_dot, 0);  else 0"
     {
-        bistop(x, x_dot, x1, x2, k, cmax, d, d.recip(), |p| p.powf(e))
+        bistop(x, x_dot, x1, x2, k, cmax, d, d.recip(), AnyExponent(e))
     }
     forbid x2.le(x1) => "x1 must be less than x2",
     forbid k.lt(S::zero()) => "the stiffness k must not be negative",
@@ -335,7 +335,7 @@ functions! {
     /// penetration d.
     Impact "IMPACT" (x: "distance, as DX(i, j)", x_dot: "rate of x, as VX(i, j)", x1: "free length: below it the force acts", k: "stiffness, not negative", e: "exponent of the penetration, positive; above 1 for a smooth beginning", cmax: "largest damping, not negative", d: "penetration at which the damping is cmax, positive") C0
     "x < x1: max(0, k (x1-x)^e - step(x, x1-d, cmax, x1, 0) x_dot);  else 0"
-    { impact(x, x_dot, x1, k, cmax, d, d.recip(), |p| p.powf(e)) }
+    { impact(x, x_dot, x1, k, cmax, d, d.recip(), AnyExponent(e)) }
     forbid k.lt(S::zero()) => "the stiffness k must not be negative",
     forbid e.le(S::zero()) => "the exponent e must be positive",
     forbid cmax.lt(S::zero()) => "the damping cmax must not be negative",

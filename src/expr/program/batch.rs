@@ -1,32 +1,36 @@
 //! Many points at once: every instruction runs over a block of points before the next one starts.
 //!
 //! A register is a block of 128 numbers; the working set of an expression stays in the innermost
-//! cache, and the inner loops are what compilers turn into vector instructions. The same code is
-//! compiled for several sets of vector instructions; which one runs is decided when the batch is
-//! made. The result of each point is that of [`Program::run`], to the bit.
+//! cache, and the inner loops are what compilers turn into vector instructions. Where instructions
+//! that the processor has follow each other, and it is one that we know, they are translated into
+//! a loop of their own that keeps values in registers. The same code is compiled for several sets
+//! of vector instructions; which one runs is decided when the batch is made. The result of each
+//! point is that of [`Program::run`], to the bit.
 
 use super::code::{Code, Instruction, gathered, partial};
+use super::machine::Columns;
 use super::operation::{BinaryOp, Comparison, UnaryOp, from_mask};
 use super::run::Program;
 use crate::diagnostic::{Cause, Diagnostic, Error};
 use crate::expr::functions::Function;
 use crate::expr::functions::prepared::{self, Prepared};
-use crate::expr::functions::step::{cubic, quintic};
+use crate::expr::functions::step::{cubic, haversine, quintic};
 use crate::scalar::{Lanes, Scalar};
+use std::sync::Arc;
 
 /// Numbers that one vector operation works on.
 const WIDTH: usize = 8;
 /// Vectors per block.
 const VECTORS: usize = 16;
 /// Points per block.
-const BLOCK: usize = WIDTH * VECTORS;
+pub(super) const BLOCK: usize = WIDTH * VECTORS;
 
 type Vector = Lanes<WIDTH>;
 
 /// One register for some points. Aligned, so that no vector lies across two lines of the cache.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-struct Block([Vector; VECTORS]);
+#[repr(C, align(64))]
+pub(super) struct Block([Vector; VECTORS]);
 
 /// A program that runs over columns of points.
 ///
@@ -44,6 +48,10 @@ struct Block([Vector; VECTORS]);
 #[derive(Clone, Debug)]
 pub struct Batch {
     program: Program,
+    /// all of the program as one loop over the columns themselves
+    whole: Option<Arc<Columns>>,
+    /// what the loops need beside the columns
+    frame: Vec<f64>,
     registers: Vec<Block>,
     steps: Vec<Step>,
     instructions: Instructions,
@@ -63,6 +71,8 @@ enum Instructions {
 #[derive(Clone, Debug)]
 enum Step {
     Plain(Instruction),
+    /// plain arithmetic that follows each other, as a loop of its own
+    Columns(Arc<Columns>),
     /// (a p b) q c, where nobody else needs the inner result
     Two(Arithmetic, Arithmetic, [u32; 4]),
     Prepared {
@@ -119,20 +129,60 @@ impl Program {
         for (register, &c) in registers.iter_mut().zip(&core.constants) {
             *register = Block([Vector::constant(c); VECTORS]);
         }
-        let mut steps: Vec<Step> = Vec::with_capacity(core.code.len());
-        for instruction in &core.code {
-            let step = self.batch_step(instruction);
-            match steps.last().and_then(|last| last.followed_by(&step)) {
-                Some(both) => steps.splice(steps.len() - 1.., [both]).for_each(drop),
-                None => steps.push(step),
-            }
-        }
+        let whole = match core.code.iter().all(Columns::can) {
+            true => Columns::of(core, &core.code, &core.outputs).map(Arc::new),
+            false => None,
+        };
+        let steps = match whole {
+            Some(_) => fused(core.code.iter().map(|i| Step::Plain(*i)).collect()),
+            None => self.batch_steps(),
+        };
         Batch {
             program: self.clone(),
+            whole,
+            frame: Columns::frame(core),
             registers,
             steps,
             instructions: Instructions::of_this_machine(),
         }
+    }
+
+    /// Returns the steps, where plain arithmetic that follows each other is a loop of its own.
+    fn batch_steps(&self) -> Vec<Step> {
+        let core = self.core();
+        let pieces: Vec<&[Instruction]> = core
+            .code
+            .chunk_by(|a, b| Columns::can(a) && Columns::can(b))
+            .flat_map(|piece| piece.chunks(MOST_IN_LOOP))
+            .collect();
+        // from the end, where it is known which registers are read behind a piece
+        let mut is_needed = vec![false; core.size as usize];
+        core.outputs
+            .iter()
+            .for_each(|&r| is_needed[r as usize] = true);
+        let mut loops: Vec<Option<Columns>> = Vec::with_capacity(pieces.len());
+        for piece in pieces.iter().rev() {
+            let mut wanted: Vec<u32> = piece.iter().map(|i| i.to).collect();
+            wanted.sort_unstable();
+            wanted.dedup();
+            wanted.retain(|&r| is_needed[r as usize]);
+            loops.push(match piece.len() {
+                1 => None,
+                _ => Columns::of(core, piece, &wanted),
+            });
+            for instruction in piece.iter().rev() {
+                is_needed[instruction.to as usize] = false;
+                core.operands(instruction, |r| is_needed[r as usize] = true);
+            }
+        }
+        let mut steps = Vec::with_capacity(pieces.len());
+        for (piece, columns) in pieces.iter().zip(loops.into_iter().rev()) {
+            match columns {
+                Some(columns) => steps.push(Step::Columns(Arc::new(columns))),
+                None => steps.extend(fused(piece.iter().map(|i| self.batch_step(i)).collect())),
+            }
+        }
+        steps
     }
 
     fn batch_step(&self, instruction: &Instruction) -> Step {
@@ -160,6 +210,21 @@ impl Program {
         }
         Step::Plain(*instruction)
     }
+}
+
+/// Most instructions of a loop over blocks; with few of them it has few columns.
+const MOST_IN_LOOP: usize = 200;
+
+/// Returns the steps with pairs of arithmetic joined.
+fn fused(steps: Vec<Step>) -> Vec<Step> {
+    let mut joined: Vec<Step> = Vec::with_capacity(steps.len());
+    for step in steps {
+        match joined.last().and_then(|last| last.followed_by(&step)) {
+            Some(both) => joined.splice(joined.len() - 1.., [both]).for_each(drop),
+            None => joined.push(step),
+        }
+    }
+    joined
 }
 
 impl Instructions {
@@ -197,6 +262,16 @@ impl Batch {
             let (input, had) = (self.program.inputs()[k], inputs[k].len());
             let what = format!("the column of {input} has {had} values for {n} points");
             return Err(Diagnostic::error(Cause::MissingValue, what).into());
+        }
+        if let Some(whole) = &self.whole
+            && outputs.len() == self.program.core().outputs.len()
+            && outputs.iter().all(|out| out.len() == n)
+        {
+            let core = self.program.core();
+            let column = |&r: &u32| inputs[core.used[r as usize - core.constants.len()] as usize];
+            let read = whole.inputs().iter().map(column);
+            whole.over_columns(&mut self.frame, read, outputs);
+            return Ok(());
         }
         for start in (0..n).step_by(BLOCK) {
             self.enter(inputs, start, n);
@@ -284,6 +359,7 @@ impl Batch {
         for step in &self.steps {
             match step {
                 Step::Plain(instruction) => plain(&self.program, instruction, r),
+                Step::Columns(columns) => columns.over_blocks(&mut self.frame, r),
                 Step::Two(p, q, registers) => two(*p, *q, *registers, r),
                 Step::Prepared {
                     what,
@@ -423,7 +499,7 @@ fn prepared(what: Prepared, p: &[f64], [a, b, to]: [u32; 3], r: &mut [Block]) {
             each!(r, to = |x = a| prepared::step_everywhere(x, &[x0, x1, h0, h1, l, h], quintic));
         }
         (Prepared::Havsin, &[x0, x1, h0, h1, l, h]) => {
-            each!(r, to = |x = a| prepared::havsin(x, &[x0, x1, h0, h1, l, h]));
+            each!(r, to = |x = a| prepared::step_everywhere(x, &[x0, x1, h0, h1, l, h], haversine));
         }
         (Prepared::Poly, _) => each!(r, to = |x = a| prepared::poly(x, p)),
         (Prepared::Cheby, _) => each!(r, to = |x = a| prepared::cheby(x, p)),

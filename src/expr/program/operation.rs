@@ -120,7 +120,8 @@ pub(super) enum Edges {
     PlusMinusOne,
 }
 
-/// Makes a function of numbers of an operation.
+/// Makes a function of numbers of an operation, with the instructions of this machine: those of AVX
+/// name a result beside their operands and save the copies.
 #[cfg(all(
     feature = "native",
     target_arch = "x86_64",
@@ -132,7 +133,15 @@ macro_rules! callable {
         extern "sysv64" fn called($($x: f64),+) -> f64 {
             $op.apply($($x),+)
         }
-        called
+        #[target_feature(enable = "avx2")]
+        extern "sysv64" fn called_with_avx($($x: f64),+) -> f64 {
+            $op.apply($($x),+)
+        }
+        if is_x86_feature_detected!("avx2") {
+            called_with_avx as *const () as usize
+        } else {
+            called as *const () as usize
+        }
     }};
 }
 
@@ -170,9 +179,9 @@ macro_rules! define_unary {
                 }
             }
 
-            /// Returns the operation as a function that generated code can call.
+            /// Returns the address of a function of one number, for generated code.
             #[cfg(all(feature = "native", target_arch = "x86_64", target_os = "linux", not(miri)))]
-            pub(super) fn callable(self) -> extern "sysv64" fn(f64) -> f64 {
+            pub(super) fn callable(self) -> usize {
                 match self {
                     $(UnaryOp::$body_op => callable!(UnaryOp::$body_op, x),)+
                     $(UnaryOp::$method_op => callable!(UnaryOp::$method_op, x),)+
@@ -217,9 +226,9 @@ macro_rules! define_binary {
                 }
             }
 
-            /// Returns the operation as a function that generated code can call.
+            /// Returns the address of a function of two numbers, for generated code.
             #[cfg(all(feature = "native", target_arch = "x86_64", target_os = "linux", not(miri)))]
-            pub(super) fn callable(self) -> extern "sysv64" fn(f64, f64) -> f64 {
+            pub(super) fn callable(self) -> usize {
                 match self {
                     $(BinaryOp::$op => callable!(BinaryOp::$op, a, b),)+
                 }

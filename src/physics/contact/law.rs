@@ -84,13 +84,22 @@ impl Normal {
             } => {
                 let (k, cmax) = (c(stiffness), c(damping));
                 // x = −g, below 0 in contact
-                impact(-depth, -rate, S::zero(), k, cmax, c(d), c(1.0 / d), |p| {
-                    if exponent == 1.0 {
-                        p
-                    } else {
-                        p.powf(c(exponent))
-                    }
-                })
+                impact(
+                    -depth,
+                    -rate,
+                    S::zero(),
+                    k,
+                    cmax,
+                    c(d),
+                    c(1.0 / d),
+                    |p: S| {
+                        if exponent == 1.0 {
+                            p
+                        } else {
+                            p.powf(c(exponent))
+                        }
+                    },
+                )
             }
             Normal::Poisson {
                 penalty,

@@ -1,7 +1,8 @@
 //! No code of the processor: for builds without the feature `native`, and for processors and
 //! systems that it does not know.
 
-use super::super::code::Core;
+use super::super::batch::Block;
+use super::super::code::{Core, Instruction};
 use super::steps::Steps;
 use std::sync::Arc;
 
@@ -13,6 +14,36 @@ impl Native {
         None
     }
     pub(super) fn run(&self, _: &mut [f64], _: &[f64]) -> Option<f64> {
+        match *self {}
+    }
+}
+
+/// There are no loops over columns.
+#[derive(Debug)]
+pub(in crate::expr::program) enum Columns {}
+
+impl Columns {
+    pub(in crate::expr::program) fn can(_: &Instruction) -> bool {
+        false
+    }
+    pub(in crate::expr::program) fn frame(_: &Core) -> Vec<f64> {
+        Vec::new()
+    }
+    pub(in crate::expr::program) fn of(_: &Core, _: &[Instruction], _: &[u32]) -> Option<Self> {
+        None
+    }
+    pub(in crate::expr::program) fn over_blocks(&self, _: &mut [f64], _: &mut [Block]) {
+        match *self {}
+    }
+    pub(in crate::expr::program) fn over_columns<'a>(
+        &self,
+        _: &mut [f64],
+        _: impl Iterator<Item = &'a [f64]>,
+        _: &mut [&mut [f64]],
+    ) {
+        match *self {}
+    }
+    pub(in crate::expr::program) fn inputs(&self) -> &[u32] {
         match *self {}
     }
 }

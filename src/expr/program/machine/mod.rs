@@ -32,6 +32,7 @@ mod steps;
 
 use super::code::Core;
 use crate::clock::Moment;
+pub(super) use native::Columns;
 use native::Native;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};

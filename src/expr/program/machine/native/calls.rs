@@ -74,7 +74,23 @@ impl CalledStep {
                         call.perform_as($function, $has_slopes, frame);
                     }
                 }
-                made
+                #[target_feature(enable = "avx2")]
+                #[allow(unsafe_code)]
+                unsafe extern "sysv64" fn made_with_avx(
+                    called: *const CalledStep,
+                    frame: *mut f64,
+                ) {
+                    // SAFETY: as for `perform`
+                    let (called, frame) = unsafe { referenced(called, frame) };
+                    if let Operation::Prepared(call) = &called.operation {
+                        call.perform_as($function, $has_slopes, frame);
+                    }
+                }
+                // instructions of AVX name a result beside their operands and save the copies
+                match is_x86_feature_detected!("avx2") {
+                    true => made_with_avx,
+                    false => made,
+                }
             }};
         }
         use Exponent::{Half, Other, Whole};
@@ -148,18 +164,30 @@ unsafe fn referenced<'a>(
     }
 }
 
-/// Returns sine and cosine.
-pub(super) extern "sysv64" fn sine_and_cosine(x: f64) -> Pair {
-    let (first, second) = Scalar::sin_cos(x);
-    Pair { first, second }
+/// Returns the address of the function that is sine and cosine.
+pub(super) fn of_sine_and_cosine() -> usize {
+    extern "sysv64" fn called(x: f64) -> Pair {
+        let (first, second) = Scalar::sin_cos(x);
+        Pair { first, second }
+    }
+    #[target_feature(enable = "avx2")]
+    extern "sysv64" fn called_with_avx(x: f64) -> Pair {
+        let (first, second) = Scalar::sin_cos(x);
+        Pair { first, second }
+    }
+    if is_x86_feature_detected!("avx2") {
+        called_with_avx as *const () as usize
+    } else {
+        called as *const () as usize
+    }
 }
 
 /// Returns the address of the function of one number that is this operation.
 pub(super) fn of_one_number(op: UnaryOp) -> usize {
-    op.callable() as usize
+    op.callable()
 }
 
 /// Returns the address of the function of two numbers that is this operation.
 pub(super) fn of_two_numbers(op: BinaryOp) -> usize {
-    op.callable() as usize
+    op.callable()
 }

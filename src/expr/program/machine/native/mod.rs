@@ -13,6 +13,7 @@
 
 mod assembler;
 mod calls;
+mod columns;
 mod needs;
 mod translate;
 
@@ -20,6 +21,7 @@ use super::super::code::Core;
 use super::steps::Steps;
 use crate::expr::program::hashing::HashMap;
 use calls::CalledStep;
+pub(in crate::expr::program) use columns::Columns;
 use memmap2::{Mmap, MmapMut};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};

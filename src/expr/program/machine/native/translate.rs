@@ -158,7 +158,7 @@ impl Translation<'_> {
                 }
             },
             Step::SineCosine { a, sine, cosine } => {
-                self.call(calls::sine_and_cosine as *const () as usize, [a], next);
+                self.call(calls::of_sine_and_cosine(), [a], next);
                 self.hold(0, sine, result);
                 self.hold(1, cosine, next.results[1]);
             }
