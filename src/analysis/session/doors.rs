@@ -126,6 +126,7 @@ impl Session {
         (self.gaps, self.states) = (Gaps::default(), Vec::new());
         (self.halted, self.ended_early) = (false, None);
         self.leapt.clear();
+        self.structures.next_generation();
         self.stiffness = MetStiffness::default();
         self.limit = self.options.limit.map(WorkLimit::begin);
     }
