@@ -35,6 +35,7 @@ mod messages;
 mod methods_outside;
 mod outputs;
 mod rates;
+mod recorded_again;
 mod references;
 mod rounding;
 mod runaway;

@@ -45,7 +45,7 @@ use crate::analysis::warning::AssemblyWarning;
 use crate::analysis::watch::{Unwatched, Watch};
 use crate::analysis::work_limit::WorkLimit;
 use crate::diagnostic::Error;
-use crate::expr::program::Program;
+use crate::expr::program::{Program, Structures};
 use crate::model::{ElementId, ElementKind, Model};
 use crate::results::{Event, Run, Status};
 use crate::scene::contacts::Shell;
@@ -182,6 +182,8 @@ pub struct Session {
     states: Vec<Stretch>,
     /// assembled starts, where they are kept
     starts: Starts,
+    /// structures of the programs so far: those of another start differ in their constants
+    structures: Structures,
 }
 
 /// Values of MODE.
@@ -240,6 +242,7 @@ impl Session {
             stiffness: MetStiffness::default(),
             states: Vec::new(),
             starts: Starts::default(),
+            structures: Structures::default(),
         }
     }
 

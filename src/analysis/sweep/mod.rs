@@ -418,11 +418,14 @@ impl Sweep {
 
     /// Sets the parameters and obeys the commands from the start.
     fn solve(&self, session: &mut Session, values: &[f64], crew: &Crew) -> Result<Status, Error> {
-        if self.changes_more() {
+        let set = |model: &mut Model| {
+            let mut all = self.parameters.iter().zip(values);
+            all.try_for_each(|(parameter, &x)| parameter.set(model, x))
+        };
+        // a list that became zero in an earlier run is not given any more
+        if self.changes_more() || set(&mut session.model).is_err() {
             session.model.clone_from(&self.model);
-        }
-        for (parameter, &x) in self.parameters.iter().zip(values) {
-            parameter.set(&mut session.model, x)?;
+            set(&mut session.model)?;
         }
         session.reset();
         let mut hooks = Hooks(crew);

@@ -7,7 +7,7 @@
 use super::operation::{BinaryOp, Comparison, UnaryOp, arithmetic_if, from_mask, truth};
 use crate::expr::functions::Function;
 use crate::scalar::{Dual, Scalar, Table};
-use std::ops::Range;
+use std::ops::{Deref, Range};
 use std::sync::Arc;
 
 /// The operation of an instruction.
@@ -53,6 +53,14 @@ pub(super) struct Instruction {
 #[derive(Debug)]
 pub(super) struct Core {
     pub(super) constants: Vec<f64>,
+    pub(super) tables: Vec<Arc<dyn Table>>,
+    pub(super) shape: Arc<Shape>,
+}
+
+/// The operations of a program on its constants and inputs, whatever these are; programs that
+/// differ in their constants alone share them.
+#[derive(Debug, Default)]
+pub(super) struct Shape {
     /// how many inputs the host supplies
     pub(super) n_inputs: usize,
     /// positions among the inputs of those that are read, one register each
@@ -61,11 +69,18 @@ pub(super) struct Core {
     /// argument registers of calls
     pub(super) lists: Vec<u32>,
     pub(super) sides: Sides,
-    pub(super) tables: Vec<Arc<dyn Table>>,
     /// number of registers
     pub(super) size: u32,
     /// registers of the outputs
     pub(super) outputs: Vec<u32>,
+}
+
+impl Deref for Core {
+    type Target = Shape;
+
+    fn deref(&self) -> &Shape {
+        &self.shape
+    }
 }
 
 /// Which instructions are needed only where a selection takes one of its sides, if skipping them is

@@ -42,6 +42,11 @@ mod reduction;
 mod replay;
 mod run;
 mod schedule;
+#[cfg_attr(
+    not(feature = "solver"),
+    allow(dead_code, reason = "sessions look for structures")
+)]
+mod structure;
 mod switching;
 #[cfg(test)]
 mod tests;
@@ -58,3 +63,5 @@ pub use operation::{BinaryOp, Comparison, UnaryOp};
 pub use record::{Condition, Sym};
 pub(super) use run::too_few;
 pub use run::{Program, Work};
+#[cfg(feature = "solver")]
+pub(crate) use structure::Structures;

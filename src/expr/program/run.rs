@@ -4,7 +4,7 @@ use super::code::Core;
 use super::input::Input;
 use super::machine::{Engine, Machine};
 use crate::diagnostic::{Cause, Diagnostic, Error};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, Table};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -17,7 +17,7 @@ pub struct Program {
     /// tells whose registers a [`Work`] holds
     id: u64,
     /// what the host supplies, in this order
-    inputs: Vec<Input>,
+    inputs: Arc<[Input]>,
     machine: Arc<Machine>,
 }
 
@@ -43,12 +43,26 @@ impl<S> Default for Work<S> {
 
 impl Program {
     pub(super) fn new(inputs: Vec<Input>, core: Core) -> Self {
+        Self::of(inputs.into(), Machine::new(Arc::new(core)))
+    }
+
+    fn of(inputs: Arc<[Input]>, machine: Machine) -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(2);
         Self {
             id: NEXT.fetch_add(2, Ordering::Relaxed),
             inputs,
-            machine: Arc::new(Machine::new(Arc::new(core))),
+            machine: Arc::new(machine),
         }
+    }
+
+    /// Returns the program that does the same with other constants and tables.
+    pub(super) fn with_constants(&self, constants: Vec<f64>, tables: &[Arc<dyn Table>]) -> Self {
+        let core = Core {
+            constants,
+            tables: tables.to_vec(),
+            shape: Arc::clone(&self.core().shape),
+        };
+        Self::of(Arc::clone(&self.inputs), self.machine.with_core(core))
     }
 
     pub(super) fn core(&self) -> &Core {

@@ -5,40 +5,16 @@
 //! that the working set stays small.
 
 use super::builder::Builder;
-use super::code::{Code, Core, Instruction, Mark, Sides};
+use super::code::{Code, Core, Instruction, Mark, Shape, Sides};
 use super::input::Input;
 use super::node::{Node, Value};
 use super::order::{Item, Order};
 use super::run::Program;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Register of a node that has none (yet).
 const NONE: u32 = u32::MAX;
-
-impl Builder {
-    /// Returns the program that computes these values, and nothing else.
-    ///
-    /// Its inputs are those it needs, in the order in which the builder was asked for them.
-    pub fn finish(&self, outputs: &[Value]) -> Program {
-        self.finished(outputs, None)
-    }
-
-    /// Returns the program as [`Builder::finish`] does, for inputs that the host lays out itself;
-    /// what is not needed is not read.
-    ///
-    /// An input that is needed and missing in `layout` is appended to it: compare
-    /// `program.inputs()`.
-    pub fn finish_with_inputs(&self, outputs: &[Value], layout: &[Input]) -> Program {
-        self.finished(outputs, Some(layout))
-    }
-
-    fn finished(&self, outputs: &[Value], layout: Option<&[Input]>) -> Program {
-        match self.reduced(outputs) {
-            Some((part, outputs)) => program(&part, &outputs, layout),
-            None => program(self, outputs, layout),
-        }
-    }
-}
 
 /// Where everything stands: what code is made from.
 struct Schedule<'a> {
@@ -48,8 +24,13 @@ struct Schedule<'a> {
     registers: Vec<u32>,
 }
 
-/// Returns the program that computes `outputs`.
-fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Program {
+/// Returns the program that computes `outputs`, and the nodes that its constants are. But for the
+/// values of the constants it follows from the kinds of the nodes and from their operands.
+pub(super) fn program(
+    builder: &Builder,
+    outputs: &[Value],
+    layout: Option<&[Input]>,
+) -> (Program, Vec<Value>) {
     let order = Order::new(builder, outputs);
     let mut registers = vec![NONE; builder.nodes.len()];
     let mut constants = Vec::new();
@@ -57,9 +38,9 @@ fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Pr
     for item in &order.items {
         let Item::Node(v) = *item else { continue };
         match builder.nodes[v.index()] {
-            Node::Constant(bits) => {
+            Node::Constant(_) => {
                 registers[v.index()] = constants.len() as u32;
-                constants.push(f64::from_bits(bits));
+                constants.push(v);
             }
             Node::Input(input) => needed.push((input, v)),
             _ => {}
@@ -85,36 +66,36 @@ fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Pr
         order,
         registers,
     };
-    let mut core = schedule.allocate(outputs, first_temporary);
-    core.outputs = outputs
-        .iter()
-        .map(|v| schedule.registers[v.index()])
-        .collect();
+    let shape = schedule.allocate(outputs, first_temporary);
+    let registers = outputs.iter().map(|v| schedule.registers[v.index()]);
     let core = Core {
-        constants,
-        n_inputs: inputs.len(),
-        used,
-        ..core
+        constants: numbers(builder, &constants),
+        tables: builder.tables.clone(),
+        shape: Arc::new(Shape {
+            n_inputs: inputs.len(),
+            used,
+            outputs: registers.collect(),
+            ..shape
+        }),
     };
-    Program::new(inputs, core)
+    (Program::new(inputs, core), constants)
+}
+
+/// Returns the numbers that some values of a builder are; what is no constant is NaN.
+pub(super) fn numbers(builder: &Builder, constants: &[Value]) -> Vec<f64> {
+    let number = |&v: &Value| builder.constant_of(v).unwrap_or(f64::NAN);
+    constants.iter().map(number).collect()
 }
 
 impl Schedule<'_> {
-    /// Gives every node a register and an instruction; returns the code, without constants, inputs
-    /// and outputs.
-    fn allocate(&mut self, outputs: &[Value], first_temporary: u32) -> Core {
+    /// Gives every node a register and an instruction; returns the code, without inputs and
+    /// outputs.
+    fn allocate(&mut self, outputs: &[Value], first_temporary: u32) -> Shape {
         let builder = self.builder;
         let mut allocation = Allocation::new(&self.order, builder, outputs, first_temporary);
-        let mut core = Core {
-            constants: Vec::new(),
-            n_inputs: 0,
-            used: Vec::new(),
+        let mut shape = Shape {
             code: Vec::with_capacity(self.order.items.len()),
-            lists: Vec::new(),
-            sides: Sides::default(),
-            tables: builder.tables.clone(),
-            size: 0,
-            outputs: Vec::new(),
+            ..Shape::default()
         };
         let mut groups = Groups::default();
         for (time, item) in self.order.items.iter().enumerate() {
@@ -128,11 +109,11 @@ impl Schedule<'_> {
                             self.registers[member.index()] = allocation.take();
                         }
                     }
-                    groups.mark(first, side, false, core.code.len());
+                    groups.mark(first, side, false, shape.code.len());
                     continue;
                 }
                 Item::End(first, side) => {
-                    groups.mark(first, side, true, core.code.len());
+                    groups.mark(first, side, true, shape.code.len());
                     continue;
                 }
             };
@@ -140,7 +121,7 @@ impl Schedule<'_> {
             if matches!(node, Node::Constant(_) | Node::Input(_)) {
                 continue;
             }
-            let operands = self.operands(&node, &mut core.lists);
+            let operands = self.operands(&node, &mut shape.lists);
             // operands that end here free their registers before the result takes one
             self.order.operands(builder, &node, |x| {
                 allocation.release(x, time as u32, &self.registers)
@@ -151,10 +132,10 @@ impl Schedule<'_> {
             };
             self.registers[v.index()] = to;
             if self.order.is_jumped[v.index()] {
-                groups.members.insert(v, core.code.len() as u32);
+                groups.members.insert(v, shape.code.len() as u32);
             }
             let [a, b, c, d] = operands;
-            core.code.push(Instruction {
+            shape.code.push(Instruction {
                 code: self.code_of(&node),
                 to,
                 a,
@@ -163,9 +144,9 @@ impl Schedule<'_> {
                 d,
             });
         }
-        core.size = allocation.size;
-        core.sides = groups.finish(&self.order);
-        core
+        shape.size = allocation.size;
+        shape.sides = groups.finish(&self.order);
+        shape
     }
 
     /// Returns the operands of an instruction: registers, or the place of the arguments of a call,

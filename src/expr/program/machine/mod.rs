@@ -70,9 +70,16 @@ pub enum Engine {
     Native,
 }
 
-/// Straight code as steps and as code of the processor, each made when it is first needed.
+/// Straight code as steps and as code of the processor.
 pub(super) struct Machine {
     core: Arc<Core>,
+    made: Arc<Made>,
+}
+
+/// Steps and code of the processor, each made when it is first needed. They read constants from
+/// the frame, so that programs which differ in these alone may share them.
+#[derive(Default)]
+struct Made {
     n_runs: AtomicU32,
     steps: OnceLock<Steps>,
     native: OnceLock<Native>,
@@ -91,13 +98,20 @@ impl std::fmt::Debug for Machine {
 
 impl Machine {
     pub(super) fn new(core: Arc<Core>) -> Self {
-        Self {
-            core,
-            n_runs: AtomicU32::new(0),
-            steps: OnceLock::new(),
-            native: OnceLock::new(),
-            is_decided: AtomicBool::new(false),
-        }
+        let made = Arc::default();
+        Self { core, made }
+    }
+
+    /// Returns the machine of a core with the same shape. What is made of one core is shared where
+    /// it is what would be made of the other.
+    pub(super) fn with_core(&self, core: Core) -> Self {
+        let steps = self.made.steps.get();
+        let made = match steps.is_some_and(|steps| lower::are_of(steps, &self.core, &core)) {
+            true => Arc::clone(&self.made),
+            false => Arc::default(),
+        };
+        let core = Arc::new(core);
+        Self { core, made }
     }
 
     pub(super) fn core(&self) -> &Core {
@@ -109,7 +123,7 @@ impl Machine {
     pub(super) fn with_engine(&self, engine: Engine) -> Option<Self> {
         let machine = Self::new(self.core.clone());
         match engine {
-            Engine::Interpreter => machine.is_decided.store(true, Ordering::Relaxed),
+            Engine::Interpreter => machine.made.is_decided.store(true, Ordering::Relaxed),
             Engine::Native => machine.translate(),
         }
         (machine.engine() == engine).then_some(machine)
@@ -117,7 +131,7 @@ impl Machine {
 
     /// Returns the engine that runs at present.
     pub(super) fn engine(&self) -> Engine {
-        match self.native.get() {
+        match self.made.native.get() {
             Some(_) => Engine::Native,
             None => Engine::Interpreter,
         }
@@ -136,7 +150,7 @@ impl Machine {
     }
 
     fn steps(&self) -> &Steps {
-        self.steps.get_or_init(|| {
+        self.made.steps.get_or_init(|| {
             let clock = Moment::now();
             let steps = lower::lower(&self.core);
             translated_since(clock);
@@ -147,13 +161,13 @@ impl Machine {
 
     /// Translates the steps, once.
     fn translate(&self) {
-        if self.is_decided.swap(true, Ordering::Relaxed) {
+        if self.made.is_decided.swap(true, Ordering::Relaxed) {
             return;
         }
         let (steps, clock) = (self.steps(), Moment::now());
         if let Some(native) = Native::of(steps, &self.core) {
             // nobody else gets so far
-            let _ = self.native.set(native);
+            let _ = self.made.native.set(native);
         }
         translated_since(clock);
     }
@@ -162,15 +176,15 @@ impl Machine {
     /// output, or `None` where there is no such code, or frame or inputs are too short.
     #[inline(always)]
     pub(super) fn run_native(&self, frame: &mut [f64], inputs: &[f64]) -> Option<f64> {
-        self.native.get()?.run(frame, inputs)
+        self.made.native.get()?.run(frame, inputs)
     }
 
     /// Goes through the steps; translates them for the next run when that pays.
     pub(super) fn interpret(&self, frame: &mut [f64], inputs: &[f64]) {
         let steps = self.steps();
         steps.run(&self.core, frame, inputs);
-        if !self.is_decided.load(Ordering::Relaxed) {
-            let n_runs = self.n_runs.fetch_add(1, Ordering::Relaxed) as usize;
+        if !self.made.is_decided.load(Ordering::Relaxed) {
+            let n_runs = self.made.n_runs.fetch_add(1, Ordering::Relaxed) as usize;
             let n_steps = steps.steps.len().max(1);
             if n_runs >= RUNS_PER_TRANSLATION + STEPS_PER_TRANSLATION / n_steps {
                 self.translate();

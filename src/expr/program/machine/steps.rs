@@ -8,6 +8,7 @@
 use super::super::code::Core;
 use super::super::operation::{BinaryOp, Comparison, UnaryOp};
 use super::prepared::PreparedCall;
+use std::collections::BTreeSet;
 
 /// One step; operands and results are slots, jumps are numbers of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +77,9 @@ pub(super) struct Steps {
     pub(super) n_registers: u32,
     /// what stands behind them
     pub(super) extras: Vec<Extra>,
+    /// numbers that the steps hold themselves, by their bits: constants of the straight code that
+    /// are the same serve
+    pub(super) asked: BTreeSet<u64>,
 }
 
 impl Step {

@@ -13,6 +13,8 @@ use super::steps::{Extra, Step, Steps};
 use crate::expr::functions::Function;
 use crate::expr::program::hashing::HashMap;
 use results::Results;
+use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Returns the steps of straight code.
 pub(super) fn lower(core: &Core) -> Steps {
@@ -41,7 +43,24 @@ pub(super) fn lower(core: &Core) -> Steps {
         prepared: lowering.prepared,
         n_registers: core.size,
         extras: lowering.extras,
+        asked: lowering.asked,
     }
+}
+
+/// Returns whether the steps of a core are those of another core of its shape: where the numbers
+/// that steps hold themselves stand at the same places among the constants, and calls read the
+/// same.
+pub(super) fn are_of(steps: &Steps, core: &Core, other: &Core) -> bool {
+    let place = |core: &Core, bits| core.constants.iter().rposition(|c| c.to_bits() == bits);
+    let bits = |core: &Core, r: u32| core.constants.get(r as usize).map(|c| c.to_bits());
+    let same_tables = core.tables.len() == other.tables.len()
+        && (core.tables.iter().zip(&other.tables)).all(|(x, y)| Arc::ptr_eq(x, y));
+    // functions whose parameters are constant are prepared, some of them written out
+    let same_parameters = || (core.lists.iter()).all(|&r| bits(core, r) == bits(other, r));
+    Arc::ptr_eq(&core.shape, &other.shape)
+        && same_tables
+        && (steps.asked.iter()).all(|&bits| place(core, bits) == place(other, bits))
+        && same_parameters()
 }
 
 /// A group of selections whose sides are being lowered.
@@ -61,6 +80,8 @@ struct Lowering<'a> {
     extras: Vec<Extra>,
     /// slots of constants by their bits
     constants: HashMap<u64, u32>,
+    /// constants that steps ask for, by their bits
+    asked: BTreeSet<u64>,
     /// slots for what lies between the steps of one instruction
     between: Vec<u32>,
     open: Vec<Open>,
@@ -78,6 +99,7 @@ impl<'a> Lowering<'a> {
             prepared: Vec::new(),
             extras: Vec::new(),
             constants: constants.map(|(c, k)| (c.to_bits(), k)).collect(),
+            asked: BTreeSet::new(),
             between: Vec::new(),
             open: Vec::new(),
             closed: (Vec::new(), usize::MAX),
@@ -91,6 +113,7 @@ impl<'a> Lowering<'a> {
 
     /// Returns the slot of a constant.
     fn constant(&mut self, c: f64) -> u32 {
+        self.asked.insert(c.to_bits());
         if let Some(&slot) = self.constants.get(&c.to_bits()) {
             return slot;
         }

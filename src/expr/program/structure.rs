@@ -1,0 +1,294 @@
+//! Structures of programs: what was made of some nodes serves all nodes that differ from them in
+//! their constants alone.
+//!
+//! The order of a program, its registers, its steps and its code for the processor follow from the
+//! kinds of its nodes and from their operands; no decision reads a constant. So a model that is
+//! recorded again with other numbers gets programs that are compared instead of made: node by node
+//! with those of before, whose shape they take. They are the programs that would have been made, to
+//! the last instruction.
+
+use super::builder::Builder;
+use super::hashing::HashMap;
+use super::input::Input;
+use super::node::{Node, Value};
+use super::run::Program;
+use super::schedule;
+use std::cell::RefCell;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Generations that a structure is kept without being asked for.
+const KEPT: u32 = 2;
+
+thread_local! {
+    /// where this thread looks for structures
+    static PRESENT: RefCell<Option<Structures>> = const { RefCell::new(None) };
+}
+
+/// Structures that have been met. Copies share them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Structures(Arc<Mutex<Met>>);
+
+#[derive(Debug, Default)]
+struct Met {
+    by_hash: HashMap<u64, Vec<Structure>>,
+    generation: u32,
+}
+
+/// Nodes, what is asked of them, and what was made of them.
+#[derive(Debug)]
+struct Structure {
+    nodes: Vec<Node>,
+    arguments: Vec<Value>,
+    inputs: Vec<Input>,
+    outputs: Vec<Value>,
+    layout: Option<Vec<Input>>,
+    program: Program,
+    /// the nodes that are the constants of the program, in its order
+    constants: Vec<Value>,
+    /// when it was last asked for
+    generation: u32,
+}
+
+/// A stretch of time in which a thread looks for structures; its end restores what was before.
+pub(crate) struct Looking(Option<Structures>);
+
+impl Drop for Looking {
+    fn drop(&mut self) {
+        let before = self.0.take();
+        PRESENT.with(|present| present.replace(before));
+    }
+}
+
+impl Structures {
+    /// Lets this thread take programs from here, and leave new ones, while the result lives.
+    #[must_use]
+    pub(crate) fn look(&self) -> Looking {
+        Looking(PRESENT.with(|present| present.replace(Some(self.clone()))))
+    }
+
+    /// Begins another generation: what none of the last ones has asked for is forgotten.
+    pub(crate) fn next_generation(&self) {
+        let mut met = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        met.generation += 1;
+        let now = met.generation;
+        met.by_hash.retain(|_, alike| {
+            alike.retain(|s| s.generation + KEPT >= now);
+            !alike.is_empty()
+        });
+    }
+}
+
+impl Builder {
+    /// Returns the program that computes these values, and nothing else.
+    ///
+    /// Its inputs are those it needs, in the order in which the builder was asked for them.
+    pub fn finish(&self, outputs: &[Value]) -> Program {
+        self.finished(outputs, None)
+    }
+
+    /// Returns the program as [`Builder::finish`] does, for inputs that the host lays out itself;
+    /// what is not needed is not read.
+    ///
+    /// An input that is needed and missing in `layout` is appended to it: compare
+    /// `program.inputs()`.
+    pub fn finish_with_inputs(&self, outputs: &[Value], layout: &[Input]) -> Program {
+        self.finished(outputs, Some(layout))
+    }
+
+    fn finished(&self, outputs: &[Value], layout: Option<&[Input]>) -> Program {
+        match self.reduced(outputs) {
+            Some((part, outputs)) => program(&part, &outputs, layout),
+            None => program(self, outputs, layout),
+        }
+    }
+}
+
+/// Returns the program that computes `outputs`, with the shape of one that was made before, where
+/// there is one.
+fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Program {
+    let Some(structures) = PRESENT.with(|present| present.borrow().clone()) else {
+        return schedule::program(builder, outputs, layout).0;
+    };
+    let mut met = structures.0.lock().unwrap_or_else(PoisonError::into_inner);
+    let now = met.generation;
+    let alike = met.by_hash.entry(hash(builder, outputs)).or_default();
+    if let Some(found) = alike.iter_mut().find(|s| s.is_of(builder, outputs, layout)) {
+        found.generation = now;
+        let constants = schedule::numbers(builder, &found.constants);
+        let program = found.program.with_constants(constants, &builder.tables);
+        // what the next one may share is likelier that of the last one than of the first
+        found.program = program.clone();
+        return program;
+    }
+    let (program, constants) = schedule::program(builder, outputs, layout);
+    alike.push(Structure {
+        nodes: builder.nodes.clone(),
+        arguments: builder.arguments.clone(),
+        inputs: builder.inputs.clone(),
+        outputs: outputs.to_vec(),
+        layout: layout.map(<[Input]>::to_vec),
+        program: program.clone(),
+        constants,
+        generation: now,
+    });
+    program
+}
+
+impl Structure {
+    /// Returns whether it was made of nodes that differ in their constants alone.
+    fn is_of(&self, builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> bool {
+        self.outputs == outputs
+            && self.layout.as_deref() == layout
+            && self.inputs == builder.inputs
+            && self.arguments == builder.arguments
+            && self.nodes.len() == builder.nodes.len()
+            && self.nodes.iter().zip(&builder.nodes).all(is_alike)
+    }
+}
+
+fn is_alike((a, b): (&Node, &Node)) -> bool {
+    matches!((a, b), (Node::Constant(_), Node::Constant(_))) || a == b
+}
+
+/// Returns a number in which structures differ that are not alike: operands of the nodes, whose
+/// kinds are compared.
+fn hash(builder: &Builder, outputs: &[Value]) -> u64 {
+    let mix = |h: u64, word: u32| {
+        (h.rotate_left(5) ^ u64::from(word)).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+    };
+    let mut h = builder.nodes.len() as u64;
+    for node in &builder.nodes {
+        match *node {
+            Node::Binary(_, a, b) => h = mix(mix(h, a.0), b.0),
+            Node::Unary(_, a) | Node::Whole(a, _) => h = mix(h, a.0),
+            Node::Select(c, yes, no) => h = mix(mix(mix(h, c.0), yes.0), no.0),
+            _ => {}
+        }
+    }
+    outputs.iter().fold(h, |h, v| mix(h, v.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::functions::Function;
+    use crate::expr::program::{BinaryOp, Comparison, Engine, Folding, UnaryOp, Work};
+
+    /// Random numbers by a linear congruence.
+    struct Random(u64);
+
+    impl Random {
+        fn below(&mut self, n: usize) -> usize {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 33) as usize % n
+        }
+    }
+
+    /// Records operations that `seed` says on two inputs and some constants.
+    fn recorded(seed: u64, constants: &[f64]) -> (Builder, Vec<Value>) {
+        let mut random = Random(seed);
+        let mut b = Builder::new(Folding::Structural);
+        let mut values: Vec<Value> = (0..2).map(|k| b.input(Input::Slot(k))).collect();
+        values.extend(constants.iter().map(|&c| b.constant(c)));
+        for _ in 0..30 {
+            let [x, y, z, w] = [(); 4].map(|()| values[random.below(values.len())]);
+            let value = match random.below(8) {
+                0 => b.unary(UnaryOp::Sin, x),
+                1 => b.unary(UnaryOp::Neg, x),
+                2 => b.binary(BinaryOp::Sub, x, y),
+                3 => b.binary(BinaryOp::Div, x, y),
+                4 => {
+                    let condition = b.compare(Comparison::Lt, x, y);
+                    b.select(condition, z, w)
+                }
+                5 => b.call(Function::Step, &[x, y, z, w, values[0]]),
+                6 => b.binary(BinaryOp::Mul, x, y),
+                _ => b.binary(BinaryOp::Add, x, y),
+            };
+            values.push(value);
+        }
+        let outputs = values.split_off(values.len() - 3);
+        (b, outputs)
+    }
+
+    fn bits(program: &Program, engine: Option<Engine>) -> Vec<u64> {
+        let program = engine.map_or(Some(program.clone()), |e| program.with_engine(e));
+        let program = program.expect("an engine that is there");
+        let mut out = vec![0.0; program.n_outputs()];
+        let mut bits = Vec::new();
+        let mut work = Work::default();
+        for k in 0..7 {
+            let x = f64::from(k) * 0.37 - 1.0;
+            program.run(&[x, 1.0 - x * x], &mut work, &mut out);
+            // engines agree that there is no number, not on its sign
+            let plain = |x: &f64| if x.is_nan() { f64::NAN } else { *x };
+            bits.extend(out.iter().map(|x| plain(x).to_bits()));
+        }
+        bits
+    }
+
+    #[test]
+    fn a_program_with_a_shape_of_before_is_the_one_made_anew_to_the_bit() {
+        let choices = [
+            0.0,
+            -0.0,
+            1.0,
+            -1.0,
+            2.0,
+            0.5,
+            0.3,
+            7.1,
+            -0.2,
+            1e-310,
+            f64::NAN,
+        ];
+        let inputs = [0, 1].map(Input::Slot);
+        let mut shared = 0;
+        for seed in 0..150 {
+            let mut random = Random(seed + 1000);
+            let structures = Structures::default();
+            for _ in 0..6 {
+                let constants = [(); 4].map(|()| choices[random.below(choices.len())]);
+                let (builder, outputs) = recorded(seed, &constants);
+                let looking = structures.look();
+                let program = builder.finish_with_inputs(&outputs, &inputs);
+                // twice, so that what is made of it is there for the next one
+                let mut here = bits(&program, None);
+                for _ in 0..60 {
+                    here = bits(&program, None);
+                }
+                drop(looking);
+                let (alone, _) = schedule::program(&builder, &outputs, Some(&inputs));
+                let reduced = builder.finish_with_inputs(&outputs, &inputs);
+                let text = |p: &Program| format!("{p} {:?}", p.inputs());
+                assert_eq!(text(&program), text(&reduced), "{seed}");
+                assert_eq!(here, bits(&reduced, Some(Engine::Interpreter)), "{seed}");
+                assert_eq!(here, bits(&alone, None), "{seed}");
+            }
+            let met = structures.0.lock().unwrap();
+            shared += 6 - met.by_hash.values().map(Vec::len).sum::<usize>();
+        }
+        assert!(shared > 50, "{shared} of 900");
+    }
+
+    #[test]
+    fn structures_nobody_asks_for_are_forgotten() {
+        let structures = Structures::default();
+        let (builder, outputs) = recorded(1, &[2.0, 3.0, 0.3, 0.7]);
+        let met = || structures.0.lock().unwrap().by_hash.len();
+        let looking = structures.look();
+        builder.finish(&outputs);
+        drop(looking);
+        builder.finish(&[outputs[0]]);
+        assert_eq!(met(), 1);
+        for _ in 0..KEPT {
+            structures.next_generation();
+            assert_eq!(met(), 1);
+        }
+        structures.next_generation();
+        assert_eq!(met(), 0);
+    }
+}
