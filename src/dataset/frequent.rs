@@ -1,9 +1,9 @@
 //! The frequent forms of a dataset's text, taken apart in one pass.
 //!
 //! The form of a dataset is that of `grammar/dataset.pest`. Most files have only words and marks,
-//! lines that go on behind a comma at the beginning of the next, quoted texts and comments. Of these
-//! the same comes out here, for a small part of the work. Whatever else stands in a text leaves all
-//! of it to the grammar.
+//! lines that go on behind a comma at the beginning of the next, quoted texts and comments. Of
+//! these the same comes out here, for a small part of the work. Whatever else stands in a text
+//! leaves all of it to the grammar.
 
 use super::syntax::{Item, Syntax, Token, TokenKind, Tokens, view_name};
 use crate::diagnostic::Span;
