@@ -1,9 +1,9 @@
 //! The frequent forms of a dataset's text, taken apart in one pass.
 //!
-//! What a dataset is `grammar/dataset.pest` says. Most files have nothing but words and marks, lines
-//! that go on behind a comma at the beginning of the next, quoted texts and comments: of these the
-//! same comes out here, in a thirtieth of the time. Whatever else stands in a text leaves all of it
-//! to the grammar.
+//! The form of a dataset is that of `grammar/dataset.pest`. Most files have only words and marks,
+//! lines that go on behind a comma at the beginning of the next, quoted texts and comments. Of
+//! these the same comes out here, for a small part of the work. Whatever else stands in a text
+//! leaves all of it to the grammar.
 
 use super::syntax::{Item, Syntax, Token, TokenKind, Tokens, view_name};
 use crate::diagnostic::Span;
@@ -55,8 +55,8 @@ pub(super) fn dataset(text: &str) -> Option<Syntax> {
 
 const END: &str = "END";
 
-/// Returns whether a byte is a mark or begins a character that may be one: no part of a word that is
-/// frequent.
+/// Returns whether a byte is a mark or begins a character that may be one: no part of a word that
+/// is frequent.
 fn ends_word(byte: u8) -> bool {
     matches!(
         byte,

@@ -239,7 +239,7 @@ impl<'s, S: Scalar> ArticulatedFactor<'s, S> {
 
     /// Returns the same but for what is far below rounding: loads fall off quickly from link to
     /// link, so that the time does not grow with the depth.
-    pub fn half_near(&self, x: BTreeMap<usize, S>) -> Vec<(usize, S)> {
+    pub(super) fn half_near(&self, x: BTreeMap<usize, S>) -> Vec<(usize, S)> {
         let links = x.keys().map(|&v| self.scene.freedoms[self.free[v]].link);
         let loads = links.map(|l| (l, Wrench::zero())).collect();
         let mut largest = 0.0_f64;

@@ -56,7 +56,7 @@ impl<S: Scalar> Factor<'_, S> {
         }
     }
     /// The same for sums of squares, but for what is far below rounding in a deep forest.
-    pub fn half_row_near(&self, row: &[(usize, S)], depth: usize) -> Vec<(usize, S)> {
+    pub(super) fn half_row_near(&self, row: &[(usize, S)], depth: usize) -> Vec<(usize, S)> {
         match self {
             Factor::Articulated(m) if depth > DEEP => m.half_near(summed(row)),
             _ => self.half_row(row),

@@ -27,8 +27,8 @@ const LARGEST_MINIMUM: f64 = 0.7;
 const FAR_FROM_DEPENDENT: f64 = 0.8;
 /// The same at a minimum found without closing states onto the rows, above which it is none.
 const LARGEST_ROUGH_MINIMUM: f64 = 0.01;
-/// Change of a margin by closing a state, over the violation of its rows beside the margin, at most:
-/// the derivatives of rows are about one.
+/// Change of a margin by closing a state, over the violation of its rows beside the margin, at
+/// most: the derivatives of rows are about one.
 const CHANGE_BY_CLOSING: f64 = 100.0;
 /// Change of an angle from one state that is looked at to the next, at most, rad.
 const MAX_TURN: f64 = 0.3;
