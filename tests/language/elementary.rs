@@ -275,7 +275,7 @@ const EDGES: [f64; 40] = [
 fn several_numbers_have_the_bits_of_one() {
     for row in rows() {
         let mut random = Random(5);
-        let mut agree = |x: [f64; 8], y: [f64; 8]| {
+        let agree = |x: [f64; 8], y: [f64; 8]| {
             let lanes = (row.lanes)(Lanes(x), Lanes(y));
             for k in 0..8 {
                 let one = (row.ours)(x[k], y[k]);
