@@ -126,11 +126,8 @@ impl Session {
         (self.gaps, self.states) = (Gaps::default(), Vec::new());
         (self.halted, self.ended_early) = (false, None);
         self.leapt.clear();
-<<<<<<< HEAD
         self.weighed = None;
-=======
         self.structures.next_generation();
->>>>>>> sweep
         self.stiffness = MetStiffness::default();
         self.limit = self.options.limit.map(WorkLimit::begin);
     }
