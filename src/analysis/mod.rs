@@ -9,6 +9,7 @@
 //! time         kinematics and dynamics: the loop over steps, switches, ranks
 //! statics      rest                      linear   eigenvalues, state matrices
 //! watch        the hooks of a caller     trajectory   states at output times
+//! runaway      motions that grow without bound, whose run would not end
 //! work_limit   processor time that may be used
 //! system       a scene as ẏ = f(t, y) and as F(t, y, ẏ) = 0; everything its programs read
 //! start        assembly, placement, initial conditions
@@ -21,6 +22,7 @@ pub mod interference;
 pub mod linear;
 pub mod motion;
 pub(in crate::analysis) mod quantity;
+mod runaway;
 pub mod session;
 pub mod start;
 pub mod statics;

@@ -1,6 +1,6 @@
 //! The result of an analysis over time: states at output times, events, and why it ended.
 
-use super::time::runaway::{Runaway, RunsAway};
+use super::runaway::{Runaway, RunsAway};
 use crate::numeric::{Stats, Stop};
 use crate::scene::broken::Broken;
 use std::collections::BTreeMap;

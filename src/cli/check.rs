@@ -164,8 +164,8 @@ fn assembled(
     found.dedup();
     // the reader has told, with more advice, what can be seen without assembly
     let told = |d: &Diagnostic| {
-        let mut read = reading.diagnostics.iter();
-        read.any(|r| r.code == d.code && r.element == d.element && r.message == d.message)
+        let what = |d: &Diagnostic| (d.code, d.subject(), d.argument);
+        reading.diagnostics.iter().any(|r| what(r) == what(d))
     };
     found.retain(|d| !told(d));
     (found.into_iter().map(|d| reading.dataset.locate(d))).collect()

@@ -49,8 +49,8 @@ impl Model {
         all
     }
 
-    /// Returns elements of which a mistake is known, as messages name them, and those that name data
-    /// among them: what is found in these may follow from it.
+    /// Returns elements of which a mistake is known, as messages name them, and those that name
+    /// data among them: what is found in these may follow from it.
     pub(crate) fn with_readers_of_data(&self, mut mistaken: BTreeSet<String>) -> BTreeSet<String> {
         if mistaken.is_empty() {
             return mistaken;

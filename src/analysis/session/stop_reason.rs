@@ -3,9 +3,9 @@
 
 use super::limit::Reached;
 use crate::analysis::quantity::place;
+use crate::analysis::runaway::RunsAway;
 use crate::analysis::statics::Imbalance;
 use crate::analysis::time::ranks::Lock;
-use crate::analysis::time::runaway::RunsAway;
 use crate::analysis::time::valueless::Valueless;
 use crate::model::{ElementId, ElementKind};
 use crate::results::Status;

@@ -396,7 +396,10 @@ impl<'a> Leg<'a> {
         let duration = (self.limits.start, self.limits.end);
         self.accountant
             .account(&mut self.out.energy, self.system, method, step, duration);
-        (self.out.runaway).see(self.system, method, duration.1 - duration.0);
+        let (now, duration) = ((attempted(method), step.t1), duration.1 - duration.0);
+        let system = &mut *self.system;
+        let kinetic = || system.energy(now.1, method.y()).map(|energy| energy[0]);
+        self.out.runaway.see(now, duration, kinetic);
         if step.t1 >= self.limit && self.limit < self.limits.end {
             let limited = &mut self.out.limited;
             match self.lands_for_output {

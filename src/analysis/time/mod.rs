@@ -3,7 +3,6 @@
 //! ```text
 //! dynamics     one method after another       options, trajectory: the question and the answer
 //! leg          the loop over the steps of one method; leg_rows, leg_output: its rows, its results
-//! runaway      motions that grow without bound, whose run would not end
 //! switches     branches: held within a step, changed where they end; chatter: without end
 //! ranks        positions where rows become dependent; better rows; why a mechanism is locked
 //! kinematics   mechanisms without freedom; continuation: their steps along a branch;
@@ -29,7 +28,6 @@ mod leg_rows;
 pub mod options;
 pub mod output;
 pub mod ranks;
-pub(in crate::analysis) mod runaway;
 pub mod states;
 pub mod switches;
 pub(super) mod valueless;

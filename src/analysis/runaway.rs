@@ -10,11 +10,8 @@
 //! n (T − t)/Δt > 10⁶          steps that are left, as many a time as the last n took
 //! ```
 //!
-//! What falls or is driven grows as a power of time, tᵏ, for which d₁/d₂ = 10^(3/k): 31 where a
-//! constant torque turns a rotor. What is stable again, as a column that has buckled, grows no more.
-
-use crate::analysis::system::System;
-use crate::numeric::{Method, Stats};
+//! Bodies that fall or are driven grow as a power of time, tᵏ, for which d₁/d₂ = 10^(3/k): 31
+//! where a constant torque turns a rotor. A column that has buckled grows no more.
 
 /// Growth of the kinetic energy, as a factor, whose time is compared with that of the one before.
 const DECADES: f64 = 1e3;
@@ -30,7 +27,7 @@ const NOTED: f64 = 1.1;
 
 /// The growth of the kinetic energy of a run so far.
 #[derive(Clone, Debug, Default)]
-pub(in crate::analysis) struct Runaway {
+pub(super) struct Runaway {
     /// times at which the largest kinetic energy had grown, and its value
     highs: Vec<(f64, f64)>,
     /// attempted steps of the method, and time, from which on is looked again
@@ -48,24 +45,25 @@ pub struct RunsAway {
     pub steps_left: f64,
 }
 
-fn attempted(stats: &Stats) -> usize {
-    stats.steps + stats.rejected
-}
-
 impl Runaway {
     /// Looks for a new method, whose steps are counted from the beginning.
     pub fn begin(&mut self) {
         self.due = (0, f64::NEG_INFINITY);
     }
 
-    /// Looks at the end of an accepted step of a run of some duration.
-    pub fn see(&mut self, system: &mut System, method: &dyn Method<System>, duration: f64) {
-        let (now, t) = (attempted(method.stats()), method.t());
-        if now < self.due.0 && t < self.due.1 {
+    /// Looks at the kinetic energy at the end of an accepted step, `t`, after so many attempted
+    /// ones, of a run of some duration.
+    pub fn see(
+        &mut self,
+        (attempted, t): (usize, f64),
+        duration: f64,
+        kinetic: impl FnOnce() -> Option<f64>,
+    ) {
+        if attempted < self.due.0 && t < self.due.1 {
             return;
         }
-        self.due = (now + LOOK.0, t + duration / LOOK.1);
-        let Some([kinetic, _]) = system.energy(t, method.y()) else {
+        self.due = (attempted + LOOK.0, t + duration / LOOK.1);
+        let Some(kinetic) = kinetic() else {
             return;
         };
         let high = self.highs.last().map_or(0.0, |h| h.1);
