@@ -96,19 +96,12 @@ fn angle(y: f64, x: f64) -> f64 {
 impl Elementary for Atan {
     type Argument = f64;
     #[inline(always)]
-    fn is_usual(_: f64) -> bool {
-        true
-    }
-    #[inline(always)]
     fn near(x: f64) -> f64 {
         // beyond, it is a right angle to the last digit
         let most = 1e18;
         let magnitude = x.abs();
         let magnitude = if magnitude > most { most } else { magnitude };
         angle(magnitude, 1.0).copysign(x)
-    }
-    fn far(x: f64) -> f64 {
-        Self::near(x)
     }
 }
 
@@ -208,10 +201,6 @@ fn arc_sine(x: f64, is_large: bool) -> [f64; 2] {
 impl Elementary for Asin {
     type Argument = f64;
     #[inline(always)]
-    fn is_usual(_: f64) -> bool {
-        true
-    }
-    #[inline(always)]
     fn near(x: f64) -> f64 {
         let is_large = x.abs() > 0.5;
         let arc = arc_sine(x.abs(), is_large);
@@ -219,17 +208,10 @@ impl Elementary for Asin {
         let times = if is_large { -2.0 } else { 1.0 };
         from_eighths(k, arc.map(|part| times * part)).copysign(x)
     }
-    fn far(x: f64) -> f64 {
-        Self::near(x)
-    }
 }
 
 impl Elementary for Acos {
     type Argument = f64;
-    #[inline(always)]
-    fn is_usual(_: f64) -> bool {
-        true
-    }
     #[inline(always)]
     fn near(x: f64) -> f64 {
         let is_large = x.abs() > 0.5;
@@ -239,8 +221,5 @@ impl Elementary for Acos {
         let times = if is_large { 2.0 } else { 1.0 };
         let times = if (x > 0.0) == is_large { times } else { -times };
         from_eighths(k, arc.map(|part| times * part))
-    }
-    fn far(x: f64) -> f64 {
-        Self::near(x)
     }
 }

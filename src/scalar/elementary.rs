@@ -16,12 +16,18 @@
 pub(super) trait Elementary {
     /// One number, or two.
     type Argument: Copy;
-    /// Returns whether [`Elementary::near`] holds.
-    fn is_usual(x: Self::Argument) -> bool;
+    /// Returns whether [`Elementary::near`] holds; it does for every argument unless this says
+    /// otherwise.
+    #[inline(always)]
+    fn is_usual(_: Self::Argument) -> bool {
+        true
+    }
     /// Returns the value for a usual argument, without any branch.
     fn near(x: Self::Argument) -> f64;
     /// Returns the value for any other argument.
-    fn far(x: Self::Argument) -> f64;
+    fn far(x: Self::Argument) -> f64 {
+        Self::near(x)
+    }
 }
 
 /// Returns the value for any argument.

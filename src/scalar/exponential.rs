@@ -226,10 +226,6 @@ impl Elementary for Cosh {
 impl Elementary for Tanh {
     type Argument = f64;
     #[inline(always)]
-    fn is_usual(_: f64) -> bool {
-        true
-    }
-    #[inline(always)]
     fn near(x: f64) -> f64 {
         // from 22 on it is one to the last digit
         let magnitude = x.abs();
@@ -237,8 +233,5 @@ impl Elementary for Tanh {
         let [sine, cosine] = twice_hyperbolic(magnitude, 0);
         let [tangent, rest] = quotient(rounded(sine), rounded(cosine));
         (tangent + rest).copysign(x)
-    }
-    fn far(x: f64) -> f64 {
-        Self::near(x)
     }
 }
