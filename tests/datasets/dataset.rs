@@ -1062,9 +1062,8 @@ fn a_force_between_markers_between_which_nothing_acts_is_told_with_what_acts_the
              JOINT/1, REVOLUTE, I=20, J=1\nVFORCE/1, I=21, JFLOAT=22, RM=1, FX=1\\FY=0\\FZ=0\n\
              SFORCE/1, TRANSLATION, I=21, J=2, ACTIONONLY, FUNCTION=1\n{asked}\nEND\n"
         );
-        let model = Model::from_text(&text).expect("no mistake");
-        let found = model
-            .doubts()
+        let found = dataset::read_text(&text)
+            .diagnostics
             .into_iter()
             .filter(|d| d.code == "nothing_acts");
         found

@@ -73,6 +73,7 @@ pub const RULES: &[Rule] = &[
     ("contacts have their law", contacts::contacts_have_their_law),
     ("axes are aligned", alignment::axes_are_aligned),
     ("requests ask something", output::requests_ask_something),
+    ("forces act where asked", between::forces_act_where_asked),
     (
         "many requests ask something",
         output::many_requests_ask_something,
@@ -119,7 +120,6 @@ pub const DOUBTS: &[Rule] = &[
         superseded::joints_have_no_old_friction,
     ),
     ("joints stand once", constraints_twice::joints_stand_once),
-    ("forces act where asked", between::forces_act_where_asked),
 ];
 
 impl Model {
