@@ -185,7 +185,7 @@ fn leading_zeros_of_numbers_mean_nothing() {
 #[test]
 fn keywords_may_be_abbreviated() {
     let m = model(
-        "REQ/1, D, I=21, C=a comment\nREQ/2, V, I=21\nREQ/3, A, I=21\nREQ/4, F, I=21\n\
+        "REQ/1, D, I=21, C=a comment\nREQ/2, V, I=21\nREQ/3, A, I=21\nREQ/4, F, I=21, J=11\n\
          GRAPH/1, ELL, CM=2, XS=1, YS=2, ZS=3\nGRAPH/2, BOX, COR=1, X=1, Y=2, Z=3\n\
          SPRING/1, TRANSLATION, I=21, J=11, C=2, K=3\nVAR/1, FUN=1\nACCG/KGRAV=-9.8\nINT/HHT, ERR=1E-5\n\
          EQUIL/ERR=1, IMB=2, TLIM=3, ALIM=4D, MAXIT=5, STAB=6",
