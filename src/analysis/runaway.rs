@@ -12,6 +12,9 @@
 //!
 //! Bodies that fall or are driven grow as a power of time, tᵏ, for which d₁/d₂ = 10^(3/k): 31
 //! where a constant torque turns a rotor. A column that has buckled grows no more.
+//!
+//! A run that comes to its end all the same is judged there, by the quarters of its time, whatever
+//! its steps: `session/growth.rs`.
 
 /// Growth of the kinetic energy, as a factor, whose time is compared with that of the one before.
 const DECADES: f64 = 1e3;
