@@ -238,6 +238,12 @@ impl Run {
                 .push(row.get(index).copied().unwrap_or(f64::NAN));
         }
     }
+    /// Makes room for further rows.
+    pub(crate) fn reserve(&mut self, n_rows: usize) {
+        for column in &mut self.columns {
+            column.values.reserve(n_rows);
+        }
+    }
     /// Begins a sequence at the next row; it is named by its kind and number.
     pub fn begin(&mut self, kind: Kind) {
         let number = self.sequences.iter().filter(|s| s.kind == kind).count() + 1;

@@ -493,6 +493,8 @@ pub fn append_means<'a>(
     let mut values = vec![0.0; program.n_outputs() + 1];
     let (mut mean, mut other) = (values[1..].to_vec(), values[1..].to_vec());
     let mut changes = vec![false; other.len()];
+    program.expect_runs(rows.len());
+    run.reserve(rows.len());
     for (k, row) in rows.iter().enumerate() {
         values[0] = row[Layout::TIME];
         program.run(row, &mut work, &mut values[1..]);

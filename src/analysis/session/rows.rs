@@ -208,6 +208,7 @@ impl Session {
         let program = system.row_values();
         let mut work = Work::default();
         let mut out = vec![0.0; program.n_outputs()];
+        program.expect_runs(rows.len());
         for row in rows {
             program.run(row, &mut work, &mut out);
             balance.worst = out.iter().fold(balance.worst, |m, g| m.max(g.abs()));

@@ -37,6 +37,13 @@ fn is_driven(scene: &Scene) -> bool {
     !scene.motions.is_empty() || scene.constraints.iter().any(|c| general(&c.id))
 }
 
+impl EnergyProgram {
+    /// Tells that so many evaluations follow.
+    pub fn expect_runs(&self, n: usize) {
+        self.program.program.expect_runs(n);
+    }
+}
+
 impl System {
     /// Records the program of energy and powers, where that has not been done.
     pub fn prepare_energy(&mut self) {

@@ -329,6 +329,20 @@ impl System {
         self.recorded.rows.worst_gap(numbers)
     }
 
+    /// Tells that so many outputs follow, by an explicit method or from position to position: what
+    /// runs at least as often is translated first, where that pays.
+    pub(in crate::analysis) fn expect_outputs(&self, n: usize, is_kinematic: bool) {
+        let recorded = &self.recorded;
+        if is_kinematic {
+            recorded.rows.expect_projections(n);
+        } else if recorded.branches.switching.is_none() {
+            recorded.rate.program.expect_runs(n);
+        }
+        if let Some(energy) = &self.energy {
+            energy.expect_runs(n);
+        }
+    }
+
     /// Returns whether rows that are left out have to be watched: they say something that changes.
     pub fn watches_rows(&self) -> bool {
         self.recorded.rows.has_left_out()

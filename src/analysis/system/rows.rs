@@ -69,6 +69,14 @@ impl Rows {
         })
     }
 
+    /// Tells that so many states are brought onto the rows, those that are left out too.
+    pub fn expect_projections(&self, n: usize) {
+        let left_out = self.left_out.iter().map(|(_, recording)| recording);
+        for recording in self.projection.iter().chain(left_out) {
+            recording.program.expect_runs(n);
+        }
+    }
+
     /// Returns the largest violation of a row at some numbers with velocities `v`, in position or
     /// velocity, relative to what counts as one and to how fast the mechanism moves.
     pub fn worst_violation(&mut self, numbers: &[f64], v: &[f64]) -> f64 {

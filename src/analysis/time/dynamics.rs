@@ -126,6 +126,9 @@ pub fn integrate(
     let mut outputs = outputs.to_vec();
     let landings = system.landings(t0, end);
     let mut course = Course::new(options, n);
+    if !numeric::is_implicit(&course.name) {
+        system.expect_outputs(outputs.len(), false);
+    }
     let mut t = t0;
     loop {
         // the method, and its state: that of an implicit one has multipliers, found anew

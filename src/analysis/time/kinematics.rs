@@ -42,6 +42,7 @@ pub fn trace(
     followed.begin(system, path);
     let mut account = DrivenAccount::default();
     account.begin(system, path, end);
+    system.expect_outputs(outputs.len(), true);
     let mut tracer = Tracer {
         started: t,
         followed,

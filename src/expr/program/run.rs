@@ -84,6 +84,13 @@ impl Program {
         self.machine.engine()
     }
 
+    /// Tells that so many runs over plain numbers follow: the program is translated before the
+    /// first where that pays.
+    #[cfg(feature = "solver")]
+    pub(crate) fn expect_runs(&self, n: usize) {
+        self.machine.expect_runs(n);
+    }
+
     /// Returns whether both are copies of one program.
     #[cfg(feature = "solver")]
     pub(crate) fn is_copy_of(&self, other: &Self) -> bool {

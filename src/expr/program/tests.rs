@@ -533,6 +533,28 @@ fn programs_that_run_often_are_translated() {
     assert_eq!(copy.value(&[4.0], &mut work), 16.0);
 }
 
+#[cfg(feature = "solver")]
+#[test]
+fn a_program_of_which_many_runs_are_expected_is_translated_before_the_first() {
+    let square = || {
+        let mut builder = Builder::new(Folding::Strict);
+        let t = builder.input(Input::Time);
+        let square = builder.binary(BinaryOp::Mul, t, t);
+        builder.finish(&[square])
+    };
+    let best = match square().with_engine(Engine::Native) {
+        Some(native) => native.engine(),
+        None => Engine::Interpreter,
+    };
+    let (few, many) = (square(), square());
+    few.expect_runs(10);
+    assert_eq!(few.engine(), Engine::Interpreter);
+    many.expect_runs(1_000_000);
+    assert_eq!(many.engine(), best);
+    let run = |program: &Program| program.value(&[1.1], &mut Work::default()).to_bits();
+    assert_eq!(run(&few), run(&many));
+}
+
 #[test]
 fn a_program_without_outputs_runs() {
     let builder = Builder::new(Folding::Strict);

@@ -8,7 +8,8 @@
 //! same order: every bit of every result is the same.
 //!
 //! A program is interpreted until that has taken about as long as its translation, measured: see
-//! [`RUNS_PER_TRANSLATION`].
+//! [`RUNS_PER_TRANSLATION`]. Where somebody knows that many runs follow, it is translated before
+//! the first.
 
 mod interpreter;
 mod lower;
@@ -45,6 +46,11 @@ const RUNS_PER_TRANSLATION: usize = 30;
 /// Interpreted steps that take as long as the part of a translation that does not grow with the
 /// program.
 const STEPS_PER_TRANSLATION: usize = 5000;
+
+/// Returns how many interpreted runs take as long as the translation of some steps.
+fn runs_per_translation(steps: &Steps) -> usize {
+    RUNS_PER_TRANSLATION + STEPS_PER_TRANSLATION / steps.steps.len().max(1)
+}
 
 thread_local! {
     /// Time that this thread has spent on lowering and translating programs.
@@ -185,10 +191,17 @@ impl Machine {
         steps.run(&self.core, frame, inputs);
         if !self.made.is_decided.load(Ordering::Relaxed) {
             let n_runs = self.made.n_runs.fetch_add(1, Ordering::Relaxed) as usize;
-            let n_steps = steps.steps.len().max(1);
-            if n_runs >= RUNS_PER_TRANSLATION + STEPS_PER_TRANSLATION / n_steps {
+            if n_runs >= runs_per_translation(steps) {
                 self.translate();
             }
+        }
+    }
+
+    /// Translates the steps at once where so many further runs take longer than that.
+    pub(super) fn expect_runs(&self, n_runs: usize) {
+        let is_decided = self.made.is_decided.load(Ordering::Relaxed);
+        if !is_decided && n_runs > runs_per_translation(self.steps()) * 3 / 2 {
+            self.translate();
         }
     }
 }
