@@ -106,6 +106,14 @@ impl Plot {
         let is_bar = |c: &usize| run.columns.get(*c).is_some_and(|c| c.bar_of.is_some());
         let columns = run.table_columns().into_iter().skip(1);
         for column in columns.filter(|c| !is_bar(c)) {
+            let unit = run.columns.get(column).map_or("", |c| c.unit.as_str());
+            let fits = |p: &Plot| {
+                !unit.is_empty() && p.common_unit() == Some(unit) && p.curves.len() < MOST_CURVES
+            };
+            let place = panels.iter().position(fits);
+            if place.is_none() && panels.len() >= most {
+                continue;
+            }
             let Some(Ok(plot)) = run
                 .columns
                 .get(column)
@@ -113,17 +121,12 @@ impl Plot {
             else {
                 continue;
             };
-            if plot.ranges().is_err() {
+            if plot.points().next().is_none() {
                 continue;
             }
-            let unit = run.columns[column].unit.as_str();
-            let fits = |p: &Plot| {
-                !unit.is_empty() && p.common_unit() == Some(unit) && p.curves.len() < MOST_CURVES
-            };
-            match panels.iter().position(fits) {
+            match place {
                 Some(same) => panels[same].curves.extend(plot.curves),
-                None if panels.len() < most => panels.push(plot),
-                None => {}
+                None => panels.push(plot),
             }
         }
         panels
@@ -203,22 +206,20 @@ impl Plot {
     /// # Errors
     /// When there is no finite point.
     pub fn ranges(&self) -> Result<(Range, Range), Diagnostic> {
-        let range = |coordinate: fn(&(f64, f64)) -> f64| {
-            let finite = self
-                .curves
-                .iter()
-                .flat_map(|c| &c.points)
-                .filter(|p| is_finite(p))
-                .map(coordinate);
-            let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-                (l.min(v), h.max(v))
-            });
-            (low <= high).then(|| widened(low, high))
-        };
-        match (range(|p| p.0), range(|p| p.1)) {
-            (Some(x), Some(y)) => Ok((x, y)),
-            _ => Err(nothing_to_show()),
+        let mut points = self.points();
+        let first = points.next().ok_or_else(nothing_to_show)?;
+        let (mut low, mut high) = (*first, *first);
+        for p in points {
+            low = (low.0.min(p.0), low.1.min(p.1));
+            high = (high.0.max(p.0), high.1.max(p.1));
         }
+        Ok((widened(low.0, high.0), widened(low.1, high.1)))
+    }
+
+    /// Returns the finite points of its curves.
+    fn points(&self) -> impl Iterator<Item = &(f64, f64)> {
+        let all = self.curves.iter().flat_map(|c| &c.points);
+        all.filter(|p| is_finite(p))
     }
 }
 

@@ -31,12 +31,11 @@ pub fn push_digits(x: f64, text: &mut Vec<u8>) {
         return text.push(b'0');
     }
     let size = x.abs();
-    if LEADING_ZEROS.contains(&size) {
-        text.extend_from_slice(format!("{x:?}").as_bytes());
-        return;
-    }
     let mut buffer = zmij::Buffer::new();
     let digits = buffer.format(x).as_bytes();
+    if LEADING_ZEROS.contains(&size) {
+        return push_behind_zeros(x, digits, text);
+    }
     let digits = digits.strip_suffix(b".0").unwrap_or(digits);
     let plus = match size < SIGNED_EXPONENT {
         true => None,
@@ -49,6 +48,31 @@ pub fn push_digits(x: f64, text: &mut Vec<u8>) {
         }
         None => text.extend_from_slice(digits),
     }
+}
+
+/// Zeros at the end of a mantissa from which on a number of [`LEADING_ZEROS`] may lie exactly in
+/// the middle between two texts of 17 digits: it has 18 digits then, so no more than 10 bits.
+const ZEROS_OF_TIES: u32 = 42;
+
+/// Appends a number of [`LEADING_ZEROS`] with an exponent. `digits`: as they were found, such as
+/// `0.00001234`.
+fn push_behind_zeros(x: f64, digits: &[u8], text: &mut Vec<u8>) {
+    let known = digits.iter().position(|c| (b'1'..=b'9').contains(c));
+    let known = known.filter(|_| x.to_bits().trailing_zeros() < ZEROS_OF_TIES);
+    let Some((first, others)) = known.and_then(|known| digits[known..].split_first()) else {
+        // of two texts that are as near the one of the standard library is taken
+        text.extend_from_slice(format!("{x:?}").as_bytes());
+        return;
+    };
+    if x.is_sign_negative() {
+        text.push(b'-');
+    }
+    text.push(*first);
+    if !others.is_empty() {
+        text.push(b'.');
+        text.extend_from_slice(others);
+    }
+    text.extend_from_slice(b"e-5");
 }
 
 /// Prints a number as FORTRAN's E format does: one digit before the point, a signed exponent of at
@@ -88,23 +112,30 @@ pub(super) fn push_column(x: f64, text: &mut Vec<u8>) {
         text.extend_from_slice(text_of_tie.as_bytes());
         return;
     };
+    // from the right: the exponent, the digits, the sign, blanks
+    let mut column = [b' '; COLUMN];
     let size = exponent.unsigned_abs();
-    let width = DECIMALS + 6 + usize::from(x.is_sign_negative()) + usize::from(size > 99);
-    text.resize(text.len() + COLUMN.saturating_sub(width), b' ');
-    if x.is_sign_negative() {
-        text.push(b'-');
-    }
-    text.extend_from_slice(&[b'0' + digits[0], b'.']);
-    text.extend(digits[1..].iter().map(|d| b'0' + d));
-    text.extend_from_slice(&[b'E', if exponent < 0 { b'-' } else { b'+' }]);
+    let n_of_exponent = if size > 99 { 3 } else { 2 };
+    let at = COLUMN - n_of_exponent;
     if size > 99 {
-        text.push(b'0' + (size / 100) as u8);
+        column[at] = b'0' + (size / 100) as u8;
     }
-    text.extend_from_slice(&[b'0' + (size / 10 % 10) as u8, b'0' + (size % 10) as u8]);
+    column[COLUMN - 2] = b'0' + (size / 10 % 10) as u8;
+    column[COLUMN - 1] = b'0' + (size % 10) as u8;
+    column[at - 1] = if exponent < 0 { b'-' } else { b'+' };
+    column[at - 2] = b'E';
+    column[at - 2 - DECIMALS..at - 2].copy_from_slice(&digits[1..]);
+    column[at - 3 - DECIMALS] = b'.';
+    column[at - 4 - DECIMALS] = digits[0];
+    if x.is_sign_negative() {
+        column[at - 5 - DECIMALS] = b'-';
+    }
+    text.extend_from_slice(&column);
 }
 
 /// A number as digits, the first of which stands before the point, and a power of ten.
 struct Decimal {
+    /// as letters
     digits: [u8; DECIMALS + 1],
     exponent: i32,
 }
@@ -113,49 +144,40 @@ impl Decimal {
     /// Rounds digits such as `-12.5` or `1e-7`; `None` where they end in the middle between two
     /// results.
     fn rounded(text: &[u8]) -> Option<Self> {
-        let mut digits = [0; DECIMALS + 1];
-        // digits that are met from the first that is not zero on; those before the point
-        let (mut n, mut exponent, mut has_point) = (0, -1, false);
-        let (mut next, mut n_further) = (0, 0);
-        let mut letters = text.iter();
-        for &c in letters.by_ref() {
-            match c {
-                b'.' => has_point = true,
-                b'0'..=b'9' => {
-                    n += usize::from(n > 0 || c != b'0');
-                    exponent += match (has_point, n) {
-                        (true, 0) => -1,
-                        (true, _) => 0,
-                        (false, 0) => 0,
-                        (false, _) => 1,
-                    };
-                    match n {
-                        0 => {}
-                        1..=6 => digits[n - 1] = c - b'0',
-                        7 => next = c,
-                        _ => n_further += usize::from(c != b'0'),
-                    }
-                }
-                b'e' => break,
-                _ => {}
-            }
-        }
-        if n == 0 {
-            exponent = 0;
-        }
-        let (mut power, mut is_negative) = (0, false);
-        for &c in letters {
-            match c {
-                b'-' => is_negative = true,
-                b'0'..=b'9' => power = 10 * power + i32::from(c - b'0'),
-                _ => {}
-            }
-        }
-        exponent += if is_negative { -power } else { power };
-        if next == b'5' && n_further == 0 {
+        let text = text.strip_prefix(b"-").unwrap_or(text);
+        let end = text.iter().rposition(|&c| c == b'e');
+        let power = end.map_or(0, |end| power_of(&text[end + 1..]));
+        let text = &text[..end.unwrap_or(text.len())];
+        let point = text.iter().position(|&c| c == b'.');
+        let (whole, behind) = match point {
+            Some(point) => (&text[..point], &text[point + 1..]),
+            None => (text, &text[text.len()..]),
+        };
+        // the digits from the first that is not zero on: some before the point, some behind it
+        let is_digit = |&c: &u8| c != b'0';
+        let (whole, behind, exponent) = match whole.iter().position(is_digit) {
+            Some(first) => (&whole[first..], behind, (whole.len() - first) as i32 - 1),
+            None => match behind.iter().position(is_digit) {
+                Some(first) => (&behind[first..], &[][..], -(first as i32) - 1),
+                None => (&[][..], &[][..], 0),
+            },
+        };
+        let mut digits = [b'0'; DECIMALS + 1];
+        let (n_whole, n) = (whole.len(), digits.len());
+        let of_whole = n_whole.min(n);
+        digits[..of_whole].copy_from_slice(&whole[..of_whole]);
+        let of_behind = behind.len().min(n - of_whole);
+        digits[of_whole..of_whole + of_behind].copy_from_slice(&behind[..of_behind]);
+        let (whole, behind) = (&whole[of_whole..], &behind[of_behind..]);
+        let mut further = whole.iter().chain(behind);
+        let next = further.next().copied().unwrap_or(b'0');
+        if next == b'5' && !further.any(is_digit) {
             return None;
         }
-        let mut rounded = Self { digits, exponent };
+        let mut rounded = Self {
+            digits,
+            exponent: exponent + power,
+        };
         if next >= b'5' {
             rounded.round_up();
         }
@@ -165,14 +187,25 @@ impl Decimal {
     /// Adds one to the last digit.
     fn round_up(&mut self) {
         for digit in self.digits.iter_mut().rev() {
-            *digit += 1;
-            if *digit < 10 {
+            if *digit < b'9' {
+                *digit += 1;
                 return;
             }
-            *digit = 0;
+            *digit = b'0';
         }
-        self.digits[0] = 1;
+        self.digits[0] = b'1';
         self.exponent += 1;
+    }
+}
+
+/// Returns the power of ten that stands behind an `e`, as `-7` or `+300`.
+fn power_of(text: &[u8]) -> i32 {
+    let digits = text.iter().filter(|c| c.is_ascii_digit());
+    let size = digits.fold(0, |power, &c| 10 * power + i32::from(c - b'0'));
+    if text.first() == Some(&b'-') {
+        -size
+    } else {
+        size
     }
 }
 
@@ -320,6 +353,26 @@ mod tests {
                 "1234567"
             ]
         );
+    }
+
+    #[test]
+    fn digits_next_to_zero_are_those_of_the_standard_library() {
+        let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+        let any = (0..20_000).map(|_| {
+            bits ^= bits << 13;
+            bits ^= bits >> 7;
+            bits ^= bits << 17;
+            LEADING_ZEROS.start * (1.0 + 8.999 * (bits >> 11) as f64 / f64::powi(2.0, 53))
+        });
+        // what may lie in the middle between two texts
+        let ties = (42..839).flat_map(|k| [22, 23].map(|p| f64::from(k) / f64::powi(2.0, p)));
+        let few = (1..1000).map(|k| f64::from(k) * 1e-7);
+        for x in any.chain(ties).chain(few) {
+            if LEADING_ZEROS.contains(&x) {
+                assert_eq!(digits(x), format!("{x:?}"));
+                assert_eq!(digits(-x), format!("{:?}", -x));
+            }
+        }
     }
 
     #[test]

@@ -55,6 +55,7 @@ impl TableText for Steps {
     }
 
     fn rows(&mut self, run: &Run, rows: Range<usize>, text: &mut Vec<u8>) {
+        let columns = separated(run, &self.owners);
         for (sequence, index) in run.sequences.iter().zip(0..) {
             let own = sequence.rows.start.max(rows.start)..sequence.rows.end.min(rows.end);
             for row in own {
@@ -62,7 +63,7 @@ impl TableText for Steps {
                 put(text, "<Step type=\"");
                 put(text, sequence.kind.step());
                 put(text, "\">\n");
-                values(run, &self.owners, row - run.released, text);
+                values(&columns, row - run.released, text);
                 put(text, "</Step>\n");
             }
         }
@@ -185,20 +186,31 @@ fn step_map(run: &Run, owners: &[Option<usize>], text: &mut String) {
     text.push_str("</StepMap>\n");
 }
 
-/// Writes one row, a line per group of neighbours with one owner. `place`: where its values are.
-fn values(run: &Run, owners: &[Option<usize>], place: usize, text: &mut Vec<u8>) {
+/// Returns the values of the columns, each with the mark that follows it: the end of a line behind
+/// the time and behind each group of neighbours with one owner.
+fn separated<'r>(run: &'r Run, owners: &[Option<usize>]) -> Vec<(&'r [f64], u8)> {
     let columns = run.columns.iter().enumerate();
-    for (i, column) in columns.filter(|(_, c)| c.bar_of.is_none()) {
-        if i > 0 {
-            text.push(if i == 1 || owners[i] != owners[i - 1] {
-                b'\n'
-            } else {
-                b' '
-            });
-        }
-        push_digits(column.values[place], text);
+    let shown: Vec<usize> = columns
+        .filter(|(_, c)| c.bar_of.is_none())
+        .map(|(i, _)| i)
+        .collect();
+    let ends = |next: usize| next == 1 || owners[next] != owners[next - 1];
+    let mark = |next: Option<&usize>| match next {
+        Some(&next) if !ends(next) => b' ',
+        _ => b'\n',
+    };
+    let marks = (1..=shown.len()).map(|k| mark(shown.get(k)));
+    (shown.iter().zip(marks))
+        .map(|(&i, mark)| (run.columns[i].values.as_slice(), mark))
+        .collect()
+}
+
+/// Writes one row. `place`: where its values are.
+fn values(columns: &[(&[f64], u8)], place: usize, text: &mut Vec<u8>) {
+    for (values, mark) in columns {
+        push_digits(values[place], text);
+        text.push(*mark);
     }
-    text.push(b'\n');
 }
 
 /// Escapes a text for an attribute: markup, and characters that XML cannot hold.
