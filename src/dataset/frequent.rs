@@ -1,7 +1,8 @@
 //! The frequent forms of a dataset's text, taken apart in one pass.
 //!
 //! The form of a dataset is that of `grammar/dataset.pest`. Most files have only words and marks,
-//! lines that go on behind a comma at the beginning of the next, quoted texts and comments. Of
+//! lines that go on behind a comma at the beginning of the next (a comma or a backslash may end the
+//! first as well), quoted texts and comments. Of
 //! these the same comes out here, for a small part of the work. Whatever else stands in a text
 //! leaves all of it to the grammar.
 
@@ -159,14 +160,15 @@ impl Reader<'_> {
                 Some(b')') => TokenKind::Close,
                 Some(b':') => TokenKind::Colon,
                 Some(mark @ (b',' | b'\\')) => {
-                    // one at the end of a line may carry on
+                    // one at the end of a line carries on, unless the next begins with a comma
                     self.at += 1;
                     self.blanks();
-                    if matches!(
-                        self.here(),
-                        None | Some(b'\n' | b'\r' | b'!' | 0x0B | 0x0C | 0x80..)
-                    ) {
-                        return None;
+                    match self.here() {
+                        Some(b'\n' | b'\r' | b'!') => {
+                            self.continuation(&mut Vec::new())?.then_some(())?;
+                        }
+                        None | Some(0x0B | 0x0C | 0x80..) => return None,
+                        _ => {}
                     }
                     self.at = start;
                     match mark {
@@ -276,6 +278,20 @@ mod tests {
             }
         }
         assert!(2 * frequent > all.len(), "{frequent} of {}", all.len());
+    }
+
+    #[test]
+    fn a_mark_before_a_line_that_goes_on_with_a_comma_is_frequent() {
+        for text in [
+            "t\nREQUEST/1\n, F2=1\\\n, F3=2\nEND",
+            "t\nPART/1,\n! and\n, GROUND\nEND",
+            "t\nREQUEST/1, F2=1\\ ! a comment\n\n , F3=2\n",
+        ] {
+            assert_eq!(dataset(text), Some(by_grammar(text)), "{text}");
+        }
+        // it carries on by itself
+        assert_eq!(dataset("t\nPART/1,\nGROUND\n"), None);
+        assert_eq!(dataset("t\nPART/1\\\nGROUND\n"), None);
     }
 
     /// Pieces of which texts are made that are and are not frequent.
