@@ -5,6 +5,8 @@
 //! itself a moment later; one that has them is ended by its guard (`limit.rs`), which keeps them.
 
 use crate::analysis::watch::Watch;
+#[cfg(unix)]
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -69,9 +71,10 @@ pub fn install() {
 /// Lets Ctrl-C and other requests to end set the flag from now on, as [`install`], and ends a run
 /// that has no results and does not see it.
 pub fn install_for_run() {
-    let _ = ctrlc::set_handler(ask_to_stop);
     #[cfg(unix)]
     listen_for_ends();
+    #[cfg(not(unix))]
+    let _ = ctrlc::set_handler(ask_to_stop);
 }
 
 fn ask_to_stop() {
@@ -81,14 +84,14 @@ fn ask_to_stop() {
     std::thread::spawn(end_unless_seen);
 }
 
-/// Listens for SIGTERM and SIGHUP, but for a signal that whoever started this program wants it to
-/// ignore (`nohup`).
+/// Listens for Ctrl-C, and for SIGTERM and SIGHUP, but for one of these that whoever started this
+/// program wants it to ignore (`nohup`).
 #[cfg(unix)]
 fn listen_for_ends() {
-    use signal_hook::consts::signal::{SIGHUP, SIGTERM};
+    use signal_hook::consts::signal::{SIGHUP, SIGINT, SIGTERM};
     let ignored = ignored_signals();
-    let heard = [SIGTERM, SIGHUP].into_iter();
-    let heard = heard.filter(|signal| ignored & (1 << (signal - 1)) == 0);
+    let heard = [SIGINT, SIGTERM, SIGHUP].into_iter();
+    let heard = heard.filter(|&signal| signal == SIGINT || ignored & (1 << (signal - 1)) == 0);
     // where that is not possible they end the program, as before
     if let Ok(mut signals) = signal_hook::iterator::Signals::new(heard) {
         std::thread::spawn(move || signals.forever().for_each(|_| ask_to_stop()));
@@ -99,7 +102,10 @@ fn listen_for_ends() {
 /// does not tell.
 #[cfg(unix)]
 fn ignored_signals() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mut bytes = [0; 4096];
+    let status = Path::new("/proc/self/status");
+    let n = crate::disk::read_beginning(status, &mut bytes).unwrap_or(0);
+    let status = String::from_utf8_lossy(&bytes[..n]);
     let line = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     line.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok())
         .unwrap_or(0)

@@ -83,8 +83,8 @@ enum Ending {
 }
 
 impl Guard {
-    /// Sets a guard over a run, which may use so many seconds of processor time.
-    pub fn set(limit: Option<f64>) -> Self {
+    /// Sets a guard over a run, which may use so many seconds of processor time by its clock.
+    pub fn set(limit: Option<f64>, clock: ProcessClock) -> Self {
         let shared = Shared {
             run: None,
             activity: None,
@@ -97,7 +97,7 @@ impl Guard {
             shared: Arc::new(Mutex::new(shared)),
             moves: Arc::default(),
             limit,
-            clock: ProcessClock::start(),
+            clock,
         };
         let watched = guard.clone();
         std::thread::spawn(move || watched.watch());

@@ -130,7 +130,8 @@ struct Growing {
 }
 
 impl Tables {
-    /// Opens the tables of a session in a folder (`None`: this one), and lets it fill them.
+    /// Opens the tables of a session in a folder (`None`: this one), and lets it fill them. The
+    /// clock tells since when the run goes on.
     ///
     /// # Errors
     /// When no file can be made there.
@@ -138,6 +139,7 @@ impl Tables {
         args: &FileArgs,
         dir: Option<&Path>,
         session: &mut Session,
+        started: ProcessClock,
     ) -> Result<Self, Diagnostic> {
         let base = session.run.name.as_str();
         let folder = OutputFolder::open(dir.unwrap_or(Path::new("")), base)?;
@@ -160,7 +162,7 @@ impl Tables {
             folder,
             tables,
             taken: 0,
-            started: ProcessClock::start(),
+            started,
             flushed: Instant::now(),
             is_claimed: false,
             is_animated: args.animate,
@@ -199,13 +201,12 @@ impl Tables {
         &self,
         session: &mut Session,
         picture: bool,
-        started: ProcessClock,
     ) -> Result<(Vec<PathBuf>, String), Failure> {
         let mut growing = self.growing();
         if let Some(failed) = growing.failed.take() {
             return Err(failed.into());
         }
-        Ok(growing.complete(session, picture, started)?)
+        Ok(growing.complete(session, picture)?)
     }
 
     /// Writes what is left of a run that another thread still works on, as [`Tables::complete`],
@@ -292,9 +293,7 @@ impl Growing {
         &mut self,
         session: &mut Session,
         picture: bool,
-        started: ProcessClock,
     ) -> Result<(Vec<PathBuf>, String), Diagnostic> {
-        self.started = started;
         session.run.record.markers = marker_digest(&session.model);
         let mut texts = linear::files(session);
         texts.extend(session.saved.iter().map(|(n, t)| (n.clone(), t.clone())));

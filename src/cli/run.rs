@@ -114,7 +114,7 @@ impl Watch for Terminal<'_> {
 pub fn run(args: &Args) -> Outcome {
     let clock = ProcessClock::start();
     interrupt::install_for_run();
-    let guard = Guard::set(args.limits.limit);
+    let guard = Guard::set(args.limits.limit, clock);
 
     // read
     let is_command = has_commands(&args.model);
@@ -131,7 +131,8 @@ pub fn run(args: &Args) -> Outcome {
     let seconds = &mut session.run.record.seconds;
     seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;
-    let tables = output::Tables::open(&args.output, args.out.as_deref(), &mut session)?;
+    let folder = args.out.as_deref();
+    let tables = output::Tables::open(&args.output, folder, &mut session, clock)?;
     guard.follow(&session, &tables);
 
     // solve
@@ -150,7 +151,7 @@ pub fn run(args: &Args) -> Outcome {
         // what an earlier run has written stays
         (Vec::new(), json::text(&json::record(&session.run)))
     } else {
-        tables.complete(&mut session, shown, clock)?
+        tables.complete(&mut session, shown)?
     };
     if args.output.open {
         let is_page = |file: &&PathBuf| super::moved::has_ending(file, "html");
