@@ -70,6 +70,7 @@ pub(super) fn find(
         keys.retain(|k| matches!(k, Key::Value(_)));
     }
     scene.loops = keys.iter().map(|k| unknown(scene, *k, guesses)).collect();
+    scene.loop_of = keys.into_iter().zip(0..).collect();
     let mut numbers = vec![0.0; scene.layout.len()];
     numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
     let undecided = Configuration::new(scene);
@@ -80,6 +81,7 @@ pub(super) fn find(
         }
         for key in found {
             let unknown = unknown(scene, key, guesses);
+            scene.loop_of.insert(key, scene.loops.len());
             scene.loops.push(unknown);
         }
     }

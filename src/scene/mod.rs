@@ -438,6 +438,8 @@ pub struct Scene {
     pub joint_variables: Vec<JointVariable>,
     /// what functions read too early: unknowns of their own
     pub loops: Vec<loops::Unknown>,
+    /// the place of each of them
+    pub loop_of: BTreeMap<loops::Key, usize>,
     /// their equations are linear, so that programs eliminate them
     pub loops_linear: bool,
     /// in ground axes

@@ -82,6 +82,13 @@ impl Mover {
     /// Returns the tangent of a small change of positions   (n_v)
     pub fn tangent(&self, q: &[f64], change: &[f64], n_v: usize) -> Vec<f64> {
         let mut out = vec![0.0; n_v];
+        self.find_tangent(q, change, &mut out);
+        out
+    }
+
+    /// Finds the tangent of a small change of positions   (n_v)
+    pub fn find_tangent(&self, q: &[f64], change: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
         for &(k, v) in &self.simple {
             out[v] = change[k];
         }
@@ -94,9 +101,8 @@ impl Mover {
                 2.0 * (w * c + x * d - y * a - z * b),
                 2.0 * (w * d - x * c + y * b - z * a),
             ];
-            replace(&mut out, v, turn);
+            replace(out, v, turn);
         }
-        out
     }
 
     /// Finds the small change of positions that a tangent stands for   (n_q)

@@ -107,7 +107,11 @@ pub fn velocities(
             v[k] = *x;
         }
         // where branches meet, along one of them
-        let tangents = Tangents::new(scene, (t, q, x), own.dependences(&part, scene));
+        let dependences = own.dependences(&part, scene);
+        if dependences.is_empty() {
+            continue;
+        }
+        let tangents = Tangents::new(scene, (t, q, x), dependences);
         let whole = |s: nalgebra::DVectorView<'_, f64>| {
             let mut all = DVector::zeros(n);
             part.columns

@@ -47,10 +47,12 @@ impl Program {
         let members = |r: &u32| -> Vec<u32> {
             let set = &sets[*r as usize * words..][..words];
             let of_word = |(w, bits): (usize, &u64)| {
-                let (first, bits) = ((w * BITS) as u32, *bits);
-                (0..u64::BITS)
-                    .filter(move |b| bits >> b & 1 == 1)
-                    .map(move |b| first + b)
+                let (first, mut left) = ((w * BITS) as u32, *bits);
+                std::iter::from_fn(move || {
+                    let b = (left != 0).then(|| left.trailing_zeros())?;
+                    left &= left - 1;
+                    Some(first + b)
+                })
             };
             set.iter().enumerate().flat_map(of_word).collect()
         };

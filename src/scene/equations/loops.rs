@@ -13,10 +13,7 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// Value of an unknown of the loops; `None`: it is none.
     pub(super) fn unknown(&self, key: Key) -> Option<S> {
-        if self.scene.loops.is_empty() {
-            return None;
-        }
-        let k = self.scene.loops.iter().position(|u| u.key == key)?;
+        let &k = self.scene.loop_of.get(&key)?;
         match self.now.loops.get(k) {
             Some(&value) => Some(value),
             None => Some(self.complain(&self.scene.loops[k].asker, Lack::OutsideLoop)),
@@ -33,9 +30,8 @@ impl<S: Scalar> Equations<'_, S> {
         if !self.discovering {
             return self.complain(asked_by, lack);
         }
-        let mut found = self.scratch.discovered.borrow_mut();
-        if !found.contains(&key) {
-            found.push(key);
+        if self.scratch.early.borrow_mut().insert(key) {
+            self.scratch.discovered.borrow_mut().push(key);
         }
         S::zero()
     }

@@ -7,6 +7,7 @@ use crate::scene::loops::Key;
 use crate::scene::sweep::{LinkState, Wrench};
 use crate::space::MarkerState;
 use std::cell::{Cell, OnceCell, RefCell};
+use std::collections::BTreeSet;
 use std::rc::Rc;
 
 /// Results found so far, and questions that are open.
@@ -31,8 +32,10 @@ pub(super) struct Scratch<S> {
     pub solving: Cell<bool>,
     /// states of stress that dependent rows permit
     pub shares: OnceCell<Vec<Share<S>>>,
-    /// unknowns of loops that were asked for too early
+    /// unknowns of loops that were asked for too early, in the order in which they were
     pub discovered: RefCell<Vec<Key>>,
+    /// the same, to be found
+    pub early: RefCell<BTreeSet<Key>>,
     /// algebraic equations whose rates are being found
     pub rates_open: RefCell<Vec<usize>>,
     /// what could not be supplied, for the compiler to report
@@ -54,6 +57,7 @@ impl<S: Copy> Scratch<S> {
             solving: Cell::new(false),
             shares: OnceCell::new(),
             discovered: RefCell::default(),
+            early: RefCell::default(),
             rates_open: RefCell::default(),
             complaints: RefCell::default(),
         }
