@@ -57,8 +57,7 @@ impl Cubic {
             *q = p + s * (m + s * (second + s * third));
             *rate = (m + s * (2.0 * second + s * 3.0 * third)) / self.h;
         }
-        let v = mover.tangent(state.q, &rate, self.layout.n_v);
-        state.v.copy_from_slice(&v);
+        mover.find_tangent(state.q, &rate, state.v);
         mover.normalize(state.q);
         for (x, [a, d]) in state.x.iter_mut().zip(&self.x) {
             *x = a + s * d;

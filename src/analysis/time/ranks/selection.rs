@@ -78,7 +78,8 @@ fn take_away(rows: &mut [Vec<f64>], pivot: usize, open: &[usize], sizes: &mut [f
     let length = sizes[pivot];
     // rows that have nothing where the chosen one has something stay as they are
     let entries = rows[pivot].iter().enumerate().filter(|e| *e.1 != 0.0);
-    let unit: Vec<(usize, f64)> = entries.map(|(k, x)| (k, x / length)).collect();
+    let mut unit: Vec<(usize, f64)> = Vec::with_capacity(rows[pivot].len());
+    unit.extend(entries.map(|(k, x)| (k, x / length)));
     for &r in open {
         let mut changed = false;
         // twice, so that nothing is left of it but rounding
