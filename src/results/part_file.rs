@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Bytes of text that are collected before they go to the file.
-const BUFFER: usize = 1 << 16;
+const BUFFER: usize = 1 << 20;
 
 /// A file beside its place.
 #[derive(Debug)]
@@ -143,7 +143,7 @@ impl<T: TableText> TextSink<T> {
 }
 
 /// Rows that become text between two looks at its length.
-const ROWS_AT_ONCE: usize = 16;
+const ROWS_AT_ONCE: usize = 256;
 
 impl<T: TableText> Sink for TextSink<T> {
     fn rows(&mut self, run: &Run, rows: Range<usize>) -> Result<(), Diagnostic> {
