@@ -1,6 +1,6 @@
 //! `cognate check`: the mistakes in datasets and command files, without running them.
 
-use super::render::{self, Sources};
+use super::render::Sources;
 use super::setup::{self, Asked};
 use super::{Exit, Failure, Outcome, complain, remark, say};
 use crate::analysis::session::{Analysis, Options, Session};
@@ -64,7 +64,7 @@ pub fn run(args: &Args) -> Outcome {
     let count = |s: Severity| all.iter().filter(|d| d.severity == s).count();
     let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
     if args.json {
-        let findings = render::as_json(&all);
+        let findings = crate::results::json::findings(&all);
         say(&format!(
             "{:#}\n",
             json!({ "errors": errors, "warnings": warnings, "findings": findings })

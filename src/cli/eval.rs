@@ -1,7 +1,7 @@
 //! `cognate eval`: the value of an expression at a time, or a table over a range of times.
 
 use super::formula::{Formula, Setting, derivative_names, give, times};
-use super::render::{Sources, as_json};
+use super::render::Sources;
 use super::{Exit, Failure, Outcome, anatomy, complain, plot, say};
 use crate::diagnostic::Diagnostic;
 use crate::expr::Profile;
@@ -122,7 +122,7 @@ pub fn run(args: &Args) -> Outcome {
 /// The mistakes as JSON. `column` counts the whole expression, as the language does; `line` and
 /// `column_in_line` are what an editor shows.
 fn with_lines(failure: &Failure) -> Value {
-    let mut all = as_json(&failure.diagnostics);
+    let mut all = json::findings(&failure.diagnostics);
     for (said, d) in all
         .as_array_mut()
         .into_iter()

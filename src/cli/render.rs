@@ -3,7 +3,6 @@
 use crate::dataset::syntax::Source;
 use crate::diagnostic::{Cause, Diagnostic, Severity, Subject};
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
-use serde_json::{Value, json};
 use std::io::IsTerminal;
 
 /// The texts that places refer to, by the name of their file; the name is empty for a text without
@@ -259,23 +258,6 @@ pub fn colour_on_stdout() -> bool {
 
 fn colours_allowed() -> bool {
     std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
-}
-
-/// Returns the diagnostics as JSON: an array of objects with the same facts.
-pub fn as_json(diagnostics: &[Diagnostic]) -> Value {
-    let one = |d: &Diagnostic| {
-        let severity = match d.severity {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-            Severity::Note => "note",
-        };
-        json!({
-            "code": d.code, "severity": severity, "message": d.message, "file": d.file, "line": d.line, "column": d.column,
-            "start": d.span.map(|s| s.start), "end": d.span.map(|s| s.end), "element": d.element, "part": d.part, "name": d.name, "help": d.help,
-            "marks": d.marks.iter().map(|(s, what)| json!({ "start": s.start, "end": s.end, "what": what })).collect::<Vec<_>>(),
-        })
-    };
-    diagnostics.iter().map(one).collect()
 }
 
 #[cfg(test)]

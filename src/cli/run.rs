@@ -131,6 +131,8 @@ pub fn run(args: &Args) -> Outcome {
     let seconds = &mut session.run.record.seconds;
     seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;
+    (session.run.log).extend(doubts.iter().map(|d| Event::Warning(d.to_string())));
+    session.run.record.doubts.clone_from(&doubts);
     let folder = args.out.as_deref();
     let tables = output::Tables::open(&args.output, folder, &mut session, clock)?;
     guard.follow(&session, &tables);

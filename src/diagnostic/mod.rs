@@ -166,19 +166,21 @@ impl std::error::Error for Diagnostic {}
 
 /// Returns the names of `known` that are close to `name`, nearest first, at most three.
 ///
-/// Close means an edit distance (with transpositions) of at most a third of the length, or a common
-/// beginning.
+/// Close means an edit distance (with transpositions) of at most a third of the length, a common
+/// beginning, or a fifth of the length from an abbreviation (`ROTATON` of `ROTATIONAL`).
 pub fn near_names<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     let name = name.to_ascii_uppercase();
-    let limit = (name.len() / 3).max(1);
+    let (limit, limit_abbreviated) = ((name.len() / 3).max(1), name.len() / 5);
     let mut found: Vec<(usize, &str)> = known
         .into_iter()
         .filter_map(|k| {
             let upper = k.to_ascii_uppercase();
-            let d = edit_distance(&name, &upper);
+            let distances = edit_distances(&name, &upper);
+            let d = *distances.last().unwrap_or(&0);
+            let abbreviated = distances.iter().any(|&d| d <= limit_abbreviated);
             let begins = name.len() >= 3
                 && (upper.starts_with(&name) || name.starts_with(&upper) && upper.len() >= 3);
-            (d <= limit || begins).then_some((d, k))
+            (d <= limit || begins || abbreviated && limit_abbreviated > 0).then_some((d, k))
         })
         .collect();
     found.sort();
@@ -187,9 +189,9 @@ pub fn near_names<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> V
     found.into_iter().map(|f| f.1).collect()
 }
 
-/// Counts the insertions, deletions, replacements and swaps of neighbours between two words
-/// (optimal string alignment).
-fn edit_distance(a: &str, b: &str) -> usize {
+/// Counts the insertions, deletions, replacements and swaps of neighbours between a word and every
+/// beginning of another, the empty one first (optimal string alignment).
+fn edit_distances(a: &str, b: &str) -> Vec<usize> {
     let (a, b): (Vec<char>, Vec<char>) =
         (a.chars().take(64).collect(), b.chars().take(64).collect());
     let mut rows = vec![(0..=b.len()).collect::<Vec<usize>>()];
@@ -205,5 +207,25 @@ fn edit_distance(a: &str, b: &str) -> usize {
         }
         rows.push(row);
     }
-    rows[a.len()][b.len()]
+    rows.swap_remove(a.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mistyped_word_is_near_the_whole_one_and_its_abbreviations() {
+        let known = ["TRANSLATIONAL", "ROTATIONAL", "FUNCTION", "SIN"];
+        for (typed, meant) in [
+            ("ROTATON", "ROTATIONAL"),
+            ("ROATION", "ROTATIONAL"),
+            ("TRANSLATON", "TRANSLATIONAL"),
+            ("FUNCITON", "FUNCTION"),
+            ("SNI", "SIN"),
+        ] {
+            assert_eq!(near_names(typed, known), [meant], "{typed}");
+        }
+        assert!(near_names("RADIUS", known).is_empty());
+    }
 }

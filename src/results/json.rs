@@ -3,10 +3,10 @@
 //! Numbers that are not finite become `null`, as JSON has no word for them.
 
 use super::{
-    Accuracy, ChannelAccuracy, Column, Counts, Energy, Jump, Kind, Loads, RankChange, Run, Seconds,
-    Sequence, Simulation, Units, malformed,
+    Accuracy, ChannelAccuracy, Column, Counts, Energy, Jump, Kind, Loads, RankChange, Record, Run,
+    Seconds, Sequence, Simulation, Units, malformed,
 };
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::model::ElementKind;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -42,6 +42,7 @@ pub fn record(run: &Run) -> Value {
         "constraint_drift": r.constraint_drift,
         "outputs": run.table_rows().count(),
         "warnings": r.warned(),
+        "findings": findings(&told(r)),
         "piecewise": r.piecewise.iter().map(jump).collect::<Vec<_>>(),
         "versions": { "cognate": env!("CARGO_PKG_VERSION"), "record": 1 },
         "files": Map::new(),
@@ -51,6 +52,39 @@ pub fn record(run: &Run) -> Value {
         add_counts(record, &r.counts);
     }
     record
+}
+
+/// Returns the diagnostics as JSON: an array of objects with the same facts.
+pub fn findings(diagnostics: &[Diagnostic]) -> Value {
+    let one = |d: &Diagnostic| {
+        let severity = match d.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Note => "note",
+        };
+        json!({
+            "code": d.code,
+            "severity": severity,
+            "message": d.message,
+            "file": d.file,
+            "line": d.line,
+            "column": d.column,
+            "start": d.span.map(|s| s.start),
+            "end": d.span.map(|s| s.end),
+            "element": d.element,
+            "part": d.part,
+            "name": d.name,
+            "help": d.help,
+            "marks": d.marks.iter().map(|(s, what)| json!({ "start": s.start, "end": s.end, "what": what })).collect::<Vec<_>>(),
+        })
+    };
+    diagnostics.iter().map(one).collect()
+}
+
+/// Returns what is doubted in the files, and the warnings of the run.
+fn told(r: &Record) -> Vec<Diagnostic> {
+    let warned = r.warnings.iter().map(Diagnostic::from);
+    r.doubts.iter().cloned().chain(warned).collect()
 }
 
 /// Adds to a record the names and sizes of the files that were written.

@@ -1,7 +1,7 @@
 //! The record of a run: how it ended, what it cost, and what the user should know.
 
 use super::{Kind, Seconds};
-use crate::diagnostic::Subject;
+use crate::diagnostic::{Diagnostic, Subject};
 
 /// The way in which a run, or one simulation of it, ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -227,6 +227,8 @@ pub struct Record {
     pub constraint_drift: Option<f64>,
     /// what the user should know although the run went on
     pub warnings: Vec<Warning>,
+    /// what is doubted in the files that were read, with places
+    pub doubts: Vec<Diagnostic>,
     /// jumps of what motions prescribe that were run all the same
     pub piecewise: Vec<Jump>,
     /// one per SIMULATE command
@@ -264,6 +266,17 @@ impl Warning {
     /// Returns what is said of the subject, without the separator before it.
     pub fn message(&self) -> &str {
         self.rest.trim_start_matches([':', ' '])
+    }
+}
+
+impl From<&Warning> for Diagnostic {
+    fn from(w: &Warning) -> Self {
+        let mut d = Diagnostic::warning(w.code, w.message());
+        d.name.clone_from(&w.name);
+        match &w.subject {
+            Some(subject) => d.element(subject.clone()),
+            None => d,
+        }
     }
 }
 

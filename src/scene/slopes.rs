@@ -8,9 +8,10 @@ use nalgebra::DMatrix;
 /// Directions of a dual number in one sweep.
 pub const WIDTH: usize = 8;
 
-/// Operations of a recorded gradient, at most; and a quarter of those of a program times its
-/// outputs whose gradient is recorded at all.
+/// Operations of a recorded gradient, at most.
 const MAX_OPERATIONS: usize = 60_000;
+/// Operations of a program times its outputs, over that, beyond which it is not looked at.
+const LOOKED_AT: usize = 16;
 
 /// Records the derivatives of the first `n` outputs of a program: output by output, with respect to
 /// the numbers at `places`; `None` where that program would take longer than duals.
@@ -19,11 +20,17 @@ pub fn recorded(
     n: usize,
     places: impl Iterator<Item = usize>,
 ) -> Option<Program> {
-    if n * program.n_operations() > MAX_OPERATIONS * 4 {
+    if n * program.n_operations() > MAX_OPERATIONS * LOOKED_AT {
         return None;
     }
     let mut builder = Builder::new(Folding::Structural);
     let outputs = program.record(&mut builder);
+    // each operation that an output needs has an adjoint of its own for it
+    let mut adjoints = outputs[..n].iter().map(|&output| builder.cost(output));
+    let few = |sum: usize, more| (sum <= MAX_OPERATIONS).then_some(sum + more);
+    if adjoints.try_fold(0, few)? > MAX_OPERATIONS {
+        return None;
+    }
     let places: Vec<_> = places
         .map(|k| builder.input(Input::Slot(k as u32)))
         .collect();

@@ -372,3 +372,40 @@ fn output_asks_for_its_files_and_they_hold_the_run() {
     );
     assert!(!out.join("lift.res").exists());
 }
+
+#[test]
+fn what_is_doubted_in_a_dataset_stands_in_the_record_and_the_log_with_its_place() {
+    let dataset = "soft at the touch\nUNITS/SYSTEM=MKS\nPART/1, GROUND\nMARKER/1, PART=1\n\
+        ! adams_view_name='ball'\nPART/2, MASS=1, CM=20, IP=0.1,0.1,0.1, QG=0,0,1.5\nMARKER/20, PART=2\n\
+        MARKER/3, PART=1, QP=-1,-1,-1\nACCGRAV/KGRAV=-9.81\nGRAPHICS/1, BOX, CORNER=3, X=2, Y=2, Z=1\n\
+        GRAPHICS/2, ELLIPSOID, CM=20, XSCALE=0.5, YSCALE=0.5, ZSCALE=0.5\n\
+        CONTACT/7, IGEOM=2, JGEOM=1, STIFFNESS=1E4, EXPONENT=0.5, DAMPING=1, DMAX=0.1\n\
+        REQUEST/1, DISPLACEMENT, I=20, J=1\nEND\n";
+    let model = scratch("doubts", "ball.adm", dataset);
+    let out = model.with_file_name("results");
+    let asked = ["run", path(&model), "--end", "2", "--out", path(&out)];
+    let done = cognate(&[&asked[..], &["--quiet"]].concat());
+    assert_eq!((done.code, done.err.as_str()), (0, ""));
+    let record = std::fs::read_to_string(out.join("ball.json")).unwrap();
+    let record: serde_json::Value = serde_json::from_str(&record).unwrap();
+    let findings = record["findings"].as_array().unwrap();
+    let told = |code: &str| findings.iter().find(|f| f["code"] == code);
+    let exponent = told("unlikely_magnitude").unwrap_or_else(|| panic!("{findings:?}"));
+    assert_eq!(
+        (&exponent["element"], &exponent["line"]),
+        (&"CONTACT/7".into(), &12.into())
+    );
+    // the sentences of the run's own warnings are there, too, in the same form
+    let sentences = record["warnings"].as_array().unwrap();
+    assert_eq!(findings.len(), 1 + sentences.len(), "{findings:?}");
+    if let Some(rounding) = told("below_rounding") {
+        // the few steps at the touch are no matter of the request
+        let sentence = rounding["message"].as_str().unwrap();
+        assert!(!sentence.contains("below rounding"), "{sentence}");
+    }
+    let log = std::fs::read_to_string(out.join("ball.msg")).unwrap();
+    assert!(
+        log.contains("CONTACT/7: warning[unlikely_magnitude]"),
+        "{log}"
+    );
+}

@@ -50,13 +50,7 @@ impl Session {
         let mut found = match self.previewed(analysis, end) {
             Ok(found) | Err(found) => found,
         };
-        let warned = self.run.record.warnings.iter().map(|w| {
-            let d = Diagnostic::warning(w.code, w.message());
-            match &w.subject {
-                Some(subject) => d.element(subject.clone()),
-                None => d,
-            }
-        });
+        let warned = self.run.record.warnings.iter().map(Diagnostic::from);
         found.extend(warned);
         found.extend(without_units(&self.model));
         found

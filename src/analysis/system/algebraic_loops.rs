@@ -12,7 +12,7 @@
 
 use super::loop_factors::LoopFactors;
 use super::recording::Recording;
-use crate::expr::program::{Program, Work};
+use crate::expr::program::{Parted, Program, Work};
 use crate::numeric::pattern::Pattern;
 use crate::scalar::Dual;
 use crate::scene::configuration::Configured;
@@ -45,11 +45,18 @@ const ROUNDING_MARGIN: f64 = 8.0;
 #[derive(Clone, Debug)]
 pub(in crate::analysis) struct AlgebraicLoops {
     residual: Program,
-    /// ∂ρ/∂z by rows, where it is not too long   (n × n)
+    /// what ρ needs of a state, whatever z is, computed once for each
+    fixed: Recording,
+    /// ρ of z and of that
+    rest: Program,
+    /// z, then what `fixed` has computed for the state
+    row: Vec<f64>,
+    /// ∂ρ/∂z of `rest` by rows, where it is not too long   (n × n)
     gradient: Option<Recording>,
     places: Range<usize>,
     work: Work,
     dual_work: Work<Dual<WIDTH>>,
+    follow_work: Work<Dual<WIDTH>>,
     dual_numbers: Vec<Dual<WIDTH>>,
     dual_out: Vec<Dual<WIDTH>>,
     rho: Vec<f64>,
@@ -123,16 +130,21 @@ impl AlgebraicLoops {
         }
         let rows = residual.dependence(&along);
         let pattern = Pattern::of_rows(n, &rows);
+        let Parted { fixed, rest } = residual.parted(places.clone());
         Self {
             factors: LoopFactors::new(&rows, &pattern),
             others: (LoopFactors::new(&rows, &pattern), false, 0.0),
             is_aside: false,
             pattern,
-            gradient: slopes::recorded(&residual, n, places.clone()).map(Recording::new),
+            gradient: slopes::recorded(&rest, n, 0..n).map(Recording::new),
+            row: vec![0.0; n + fixed.n_outputs()],
+            fixed: Recording::new(fixed),
+            rest,
             residual,
             places,
             work: Work::default(),
             dual_work: Work::default(),
+            follow_work: Work::default(),
             dual_numbers: Vec::new(),
             dual_out: vec![lift(0.0); n],
             rho: vec![0.0; n],
@@ -157,34 +169,43 @@ impl AlgebraicLoops {
         }
     }
 
+    /// Prepares the row for the state in `numbers`.
+    fn see(&mut self, numbers: &[f64]) {
+        let fixed = self.fixed.run(numbers);
+        self.row[self.places.len()..].copy_from_slice(fixed);
+    }
+
+    /// Evaluates ρ of the unknowns in `numbers` at the state that was seen last; its size.
     fn evaluate(&mut self, numbers: &[f64]) -> f64 {
-        self.residual.run(numbers, &mut self.work, &mut self.rho);
+        self.row[..self.places.len()].copy_from_slice(&numbers[self.places.clone()]);
+        self.rest.run(&self.row, &mut self.work, &mut self.rho);
         self.rho.iter().map(|r| r * r).sum::<f64>().sqrt()
     }
 
-    /// Factors ∂ρ/∂z.
+    /// Factors ∂ρ/∂z at the unknowns in `numbers` and the state that was seen last.
     fn factor(&mut self, numbers: &[f64]) -> Result<(), usize> {
         let n = self.rho.len();
+        self.row[..n].copy_from_slice(&numbers[self.places.clone()]);
         if let Some(gradient) = &mut self.gradient {
-            let entries = gradient.run(numbers);
+            let entries = gradient.run(&self.row);
             for (entry, (i, k)) in self.factors.entries.iter_mut().zip(self.pattern.entries()) {
                 *entry = entries[i * n + k];
             }
             return self.factors();
         }
         self.dual_numbers.clear();
-        self.dual_numbers.extend(numbers.iter().map(|&x| lift(x)));
+        self.dual_numbers.extend(self.row.iter().map(|&x| lift(x)));
         for some in self.pattern.groups().chunks(WIDTH) {
             for (k, group) in some.iter().enumerate() {
                 for &place in group {
-                    self.dual_numbers[self.places.clone()][place].eps[k] = 1.0;
+                    self.dual_numbers[place].eps[k] = 1.0;
                 }
             }
-            self.residual
+            self.rest
                 .eval(&self.dual_numbers, &mut self.dual_work, &mut self.dual_out);
             for (k, group) in some.iter().enumerate() {
                 for &place in group {
-                    self.dual_numbers[self.places.clone()][place].eps[k] = 0.0;
+                    self.dual_numbers[place].eps[k] = 0.0;
                     for (entry, i) in self.pattern.column(place) {
                         self.factors.entries[entry] = self.dual_out[i].eps[k];
                     }
@@ -207,6 +228,7 @@ impl AlgebraicLoops {
     /// The index of an unknown whose loop has no solution near.
     pub fn solve(&mut self, numbers: &mut [f64]) -> Result<(), usize> {
         let begun = largest(&numbers[self.places.clone()]);
+        self.see(numbers);
         let mut size = self.evaluate(numbers);
         for _ in 0..MAX_ITERATIONS {
             if size <= self.rounding {
@@ -308,11 +330,13 @@ impl AlgebraicLoops {
                 };
                 *q += side * MOVED_BY * q.abs().max(*size);
             }
+            self.see(numbers);
             self.evaluate(numbers);
             let change = self.rho.iter().zip(&rho).map(|(a, b)| (a - b) * (a - b));
             largest = largest.max(change.sum::<f64>().sqrt());
             numbers[self.positions.clone()].copy_from_slice(&here);
         }
+        self.see(numbers);
         self.rho = rho;
         self.rounding = ROUNDING_MARGIN * largest;
         self.rounding
@@ -365,10 +389,11 @@ impl AlgebraicLoops {
     pub fn follow(&mut self, numbers: &mut [Dual<WIDTH>], first: bool) -> Result<(), usize> {
         if first {
             let plain: Vec<f64> = numbers.iter().map(|x| x.re).collect();
+            self.see(&plain);
             self.factor(&plain)?;
         }
         self.residual
-            .eval(numbers, &mut self.dual_work, &mut self.dual_out);
+            .eval(numbers, &mut self.follow_work, &mut self.dual_out);
         for direction in 0..WIDTH {
             for (s, out) in self.step.iter_mut().zip(&self.dual_out) {
                 *s = -out.eps[direction];

@@ -8,6 +8,9 @@ use crate::results::{Quantity, RankChange, RowChange};
 use crate::scene::equations::Unsupported;
 use std::f64::consts::PI;
 
+/// One in so many steps that ask for too much is no matter of the request.
+const FEW_STEPS: usize = 20;
+
 /// Something that a simulation met.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -242,6 +245,14 @@ impl RunWarning {
                 let spline = names.of(ElementKind::Spline.id(*spline));
                 outside_data(&spline, *range, *value, *since)
             }
+            RunWarning::BelowRounding {
+                error,
+                below,
+                steps,
+            } if below * FEW_STEPS < *steps => format!(
+                "an error of {error} could not be kept in {below} of {steps} steps: shorter ones were \
+                 no better, as the rates are rounded or change without a slope there"
+            ),
             RunWarning::BelowRounding {
                 error,
                 below,

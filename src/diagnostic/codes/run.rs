@@ -188,7 +188,8 @@ LINEAR_EXTRAPOLATE. Neither was measured. Give data as far as the mechanism goes
         name: "below_rounding",
         summary: "the error that is asked for is smaller than what rounding leaves",
         explanation: "\
-The steps so far are as exact as rounding permits. A larger ERROR takes fewer steps for the same digits.
+The steps so far are as exact as rounding permits. A larger ERROR takes fewer steps for the same digits. Where only few steps are
+meant, rates may also change without a slope there: a force that grows as a root of a depth (EXPONENT below 1) is endlessly stiff at the touch.
 
     cognate run model.acf --error 1e-10  instead of 1e-15",
     },

@@ -36,6 +36,8 @@ mod node;
 mod operation;
 mod order;
 #[cfg(feature = "solver")]
+mod parting;
+#[cfg(feature = "solver")]
 mod peaks;
 mod record;
 mod reduction;
@@ -60,6 +62,8 @@ pub use input::Input;
 pub use machine::{Engine, translation_time};
 pub use node::Value;
 pub use operation::{BinaryOp, Comparison, UnaryOp};
+#[cfg(feature = "solver")]
+pub(crate) use parting::Parted;
 pub use record::{Condition, Sym};
 pub(super) use run::too_few;
 pub use run::{Program, Work};

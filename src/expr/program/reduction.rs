@@ -17,13 +17,7 @@ impl Builder {
     /// `None`: they need nearly all of it.
     pub(super) fn reduced(&self, values: &[Value]) -> Option<(Builder, Vec<Value>)> {
         let n = values.iter().map(|v| v.index() + 1).max().unwrap_or(0);
-        let mut needed = self.needed(values, n);
-        for k in (0..n).rev() {
-            if let (true, Node::Partial { call, .. }) = (needed[k], self.nodes[k]) {
-                // what it is a derivative of is read, though it need not be computed
-                needed[call.index()] = true;
-            }
-        }
+        let needed = self.read(values, n);
         let n_needed = needed.iter().filter(|&&n| n).count();
         if n_needed as f64 >= NEARLY_ALL * self.nodes.len() as f64 {
             return None;
@@ -42,8 +36,30 @@ impl Builder {
         Some((part, values))
     }
 
+    /// Returns how many operations a value takes.
+    #[cfg(feature = "solver")]
+    pub(crate) fn cost(&self, value: Value) -> usize {
+        let needed = self.needed(&[value], value.index() + 1);
+        let is_free = |node: &Node| matches!(node, Node::Constant(_) | Node::Input(_));
+        let nodes = needed.iter().zip(&self.nodes);
+        nodes.filter(|(n, node)| **n && !is_free(node)).count()
+    }
+
+    /// Returns which of the first `n` nodes some values need, calls included of which they need a
+    /// derivative alone.
+    pub(super) fn read(&self, values: &[Value], n: usize) -> Vec<bool> {
+        let mut needed = self.needed(values, n);
+        for k in (0..n).rev() {
+            if let (true, Node::Partial { call, .. }) = (needed[k], self.nodes[k]) {
+                // what it is a derivative of is read, though it need not be computed
+                needed[call.index()] = true;
+            }
+        }
+        needed
+    }
+
     /// Returns a node with its operands at their new places, and lists its arguments.
-    fn copied(&self, node: &Node, places: &[Value], arguments: &mut Vec<Value>) -> Node {
+    pub(super) fn copied(&self, node: &Node, places: &[Value], arguments: &mut Vec<Value>) -> Node {
         let of = |v: Value| places[v.index()];
         let listed = arguments.len() as u32;
         if let Some(range) = self.list(node) {
