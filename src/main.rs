@@ -49,16 +49,13 @@ mod memory {
         unsafe extern "C" {
             safe fn mallopt(parameter: c_int, value: c_int) -> c_int;
         }
-        // names of mallopt(3); a block of that size is one of its own, as the allocator would find
-        // out with time
-        const TRIM_THRESHOLD: c_int = -1;
+        // names of mallopt(3)
         const TOP_PAD: c_int = -2;
         const MMAP_THRESHOLD: c_int = -3;
-        let most = 32 << 20;
         // an allocator that does not know them stays as it is
         mallopt(TOP_PAD, 8 << 20);
-        mallopt(MMAP_THRESHOLD, most);
-        mallopt(TRIM_THRESHOLD, 2 * most);
+        // larger blocks stay apart, as they do at first: tables of many rows grow faster so
+        mallopt(MMAP_THRESHOLD, 128 << 10);
     }
 
     #[inline]
