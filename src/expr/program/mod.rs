@@ -48,6 +48,7 @@ mod schedule;
 )]
 mod structure;
 mod switching;
+mod tape;
 #[cfg(test)]
 mod tests;
 #[cfg(feature = "solver")]

@@ -13,6 +13,7 @@ use super::input::Input;
 use super::node::{Node, Value};
 use super::run::Program;
 use super::schedule;
+use super::tape::{Tape, Taped};
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -32,6 +33,11 @@ pub(crate) struct Structures(Arc<Mutex<Met>>);
 struct Met {
     by_hash: HashMap<u64, Vec<Structure>>,
     generation: u32,
+    /// tapes of the builders of a generation, in the order in which they were made; `None`: it is
+    /// in a builder
+    tapes: Vec<Option<Tape>>,
+    /// number of builders that were made in this generation
+    n_builders: usize,
 }
 
 /// Nodes, what is asked of them, and what was made of them.
@@ -70,12 +76,35 @@ impl Structures {
     pub(crate) fn next_generation(&self) {
         let mut met = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         met.generation += 1;
+        met.n_builders = 0;
         let now = met.generation;
         met.by_hash.retain(|_, alike| {
             alike.retain(|s| s.generation + KEPT >= now);
             !alike.is_empty()
         });
     }
+
+    /// Takes a tape back that a builder had.
+    pub(super) fn put_back(&self, place: usize, tape: Tape) {
+        let mut met = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(home) = met.tapes.get_mut(place) {
+            *home = Some(tape);
+        }
+    }
+}
+
+/// Returns a tape for the next builder, where this thread looks for structures.
+pub(super) fn tape() -> Option<Taped> {
+    let structures = PRESENT.with(|present| present.borrow().clone())?;
+    let mut met = structures.0.lock().unwrap_or_else(PoisonError::into_inner);
+    let place = met.n_builders;
+    met.n_builders += 1;
+    if met.tapes.len() <= place {
+        met.tapes.push(None);
+    }
+    let tape = met.tapes[place].take();
+    drop(met);
+    Some(Taped::new(tape, structures, place))
 }
 
 impl Builder {
@@ -96,18 +125,31 @@ impl Builder {
     }
 
     fn finished(&self, outputs: &[Value], layout: Option<&[Input]>) -> Program {
-        match self.reduced(outputs) {
-            Some((part, outputs)) => program(&part, &outputs, layout),
-            None => program(self, outputs, layout),
+        if let Some(program) = self.program_by_tape(outputs, layout) {
+            return program;
         }
+        let (program, constants) = match self.reduced(outputs) {
+            Some(part) => {
+                let (program, constants) = program(&part.builder, &part.values, layout);
+                let origin = |v: Value| part.origins[v.index()];
+                (program, constants.into_iter().map(origin).collect())
+            }
+            None => program(self, outputs, layout),
+        };
+        self.keep_program(outputs, layout, (&program, constants));
+        program
     }
 }
 
 /// Returns the program that computes `outputs`, with the shape of one that was made before, where
-/// there is one.
-fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Program {
+/// there is one; and the nodes that are its constants, in its order.
+fn program(
+    builder: &Builder,
+    outputs: &[Value],
+    layout: Option<&[Input]>,
+) -> (Program, Vec<Value>) {
     let Some(structures) = PRESENT.with(|present| present.borrow().clone()) else {
-        return schedule::program(builder, outputs, layout).0;
+        return schedule::program(builder, outputs, layout);
     };
     let mut met = structures.0.lock().unwrap_or_else(PoisonError::into_inner);
     let now = met.generation;
@@ -118,7 +160,7 @@ fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Pr
         let program = found.program.with_constants(constants, &builder.tables);
         // what the next one may share is likelier that of the last one than of the first
         found.program = program.clone();
-        return program;
+        return (program, found.constants.clone());
     }
     let (program, constants) = schedule::program(builder, outputs, layout);
     alike.push(Structure {
@@ -128,10 +170,10 @@ fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Pr
         outputs: outputs.to_vec(),
         layout: layout.map(<[Input]>::to_vec),
         program: program.clone(),
-        constants,
+        constants: constants.clone(),
         generation: now,
     });
-    program
+    (program, constants)
 }
 
 impl Structure {
