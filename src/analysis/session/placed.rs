@@ -145,3 +145,56 @@ impl Session {
         alike.then_some(placed)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::session::{Analysis, DYNAMIC, Options};
+
+    const PENDULUM: &str = "pendulum\nPART/1, GROUND\nMARKER/1, PART=1\n\
+        PART/2, MASS=2, CM=20, IP=0.1,0.1,0.1, WZ=0.3\nMARKER/20, PART=2, QP=1,0,0\nMARKER/21, PART=2\n\
+        JOINT/1, REVOLUTE, I=21, J=1\nMARKER/3, PART=1, QP=0,1,0\n\
+        SPRINGDAMPER/1, TRANSLATION, I=20, J=3, K=10, C=0.1, L=0.5\nACCGRAV/JGRAV=-9.81\nEND\n";
+
+    #[test]
+    fn other_loads_keep_the_place_and_all_else_makes_another() {
+        let options = Options {
+            keep_start: true,
+            ..Options::default()
+        };
+        let model = Model::from_text(PENDULUM).unwrap();
+        let mut session = Session::new(model, "kept", options);
+        let mut stays = |change: &dyn Fn(&mut Model)| {
+            let before = session.starts.placed.get(&DYNAMIC).cloned();
+            session.reset();
+            change(&mut session.model);
+            let done = session.run_to(Analysis::Dynamic, 0.01, 1);
+            let after = session.starts.placed.get(&DYNAMIC).cloned();
+            let stays = before.zip(after).is_some_and(|(a, b)| Arc::ptr_eq(&a, &b));
+            stays && done.is_ok()
+        };
+        assert!(!stays(&|_| ()));
+        assert!(stays(&|m| m.parts.entry(2).or_default().mass = 3.0));
+        assert!(stays(&|m| m.gravity = [0.0, -1.6, 0.0]));
+        assert!(stays(&|m| m
+            .spring_dampers
+            .entry(1)
+            .or_default()
+            .stiffness = 7.0));
+        assert!(!stays(&|m| m.markers.entry(20).or_default().qp[1] = 0.1));
+        assert!(stays(&|m| m.parts.entry(2).or_default().mass = 1.0));
+        assert!(!stays(&|m| m
+            .parts
+            .entry(2)
+            .or_default()
+            .angular_velocity = [None; 3]));
+        assert!(!stays(&|m| m.parts.entry(2).or_default().mass = 0.0));
+    }
+
+    #[test]
+    fn a_zero_of_the_other_sign_is_another_place() {
+        assert!(are_same(&[0.0, 1.0], &[0.0, 1.0]));
+        assert!(!are_same(&[0.0, 1.0], &[-0.0, 1.0]));
+        assert!(!are_same(&[0.0], &[0.0, 1.0]));
+    }
+}

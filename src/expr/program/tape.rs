@@ -57,6 +57,8 @@ enum Made {
     },
     /// the number of operations
     Count(usize),
+    /// nothing in them depends on time alone
+    Untimed,
 }
 
 /// What was asked of a builder, and answered.
@@ -145,6 +147,8 @@ impl Builder {
                 self.nodes[answer.index()] == Node::Constant(bits)
             }
             (Node::Constant(_), Node::Constant(bits)) => !taped.numbers.contains_key(&bits),
+            // most of them
+            (Node::Binary(op, a, b), Node::Binary(o, x, y)) => (op, a, b) == (o, x, y),
             _ => asked == node,
         };
         let found = match taped.tape.questions.get(k) {
@@ -218,6 +222,7 @@ impl Builder {
         if let Some((k, list)) = taped.next {
             match taped.tape.questions.get(k) {
                 Some(&(Question::Binary(o, x, y, inner), answer)) if (o, x, y) == (op, a, b) => {
+                    // mostly one node
                     let end = k + 1 + inner as usize;
                     let within = &taped.tape.questions[k + 1..end];
                     let mut next = n;
@@ -270,6 +275,20 @@ impl Builder {
         }
     }
 
+    /// Returns what `known` makes of something that was made of the same values at the same place of
+    /// the tape.
+    fn end_by_tape<T>(
+        &self,
+        outputs: &[Value],
+        mut known: impl FnMut(&mut Made) -> Option<T>,
+    ) -> Option<T> {
+        let taped = self.taped.as_ref()?;
+        let (place, _) = taped.next?;
+        let mut ends = taped.tape.ends.borrow_mut();
+        let mut alike = (ends.iter_mut()).filter(|e| e.place == place && e.outputs == outputs);
+        alike.find_map(|end| known(&mut end.made))
+    }
+
     /// Returns the program that was made of the same values at the same place of the tape, with the
     /// constants of this builder.
     pub(super) fn program_by_tape(
@@ -277,16 +296,12 @@ impl Builder {
         outputs: &[Value],
         layout: Option<&[Input]>,
     ) -> Option<Program> {
-        let taped = self.taped.as_ref()?;
-        let (place, _) = taped.next?;
-        let mut ends = taped.tape.ends.borrow_mut();
-        let mut at_place = ends.iter_mut().filter(|end| end.place == place);
-        at_place.find_map(|end| match &mut end.made {
+        self.end_by_tape(outputs, |made| match made {
             Made::Program {
                 layout: of,
                 program,
                 constants,
-            } if end.outputs == outputs && of.as_deref() == layout => {
+            } if of.as_deref() == layout => {
                 let numbers = schedule::numbers(self, constants);
                 // what the next one may share is likelier that of the last one than of the first
                 *program = program.with_constants(numbers, &self.tables);
@@ -313,20 +328,26 @@ impl Builder {
     /// Returns how many operations some values took at the same place of the tape; else what
     /// `count` says.
     pub(super) fn count_by_tape(&self, outputs: &[Value], count: impl FnOnce() -> usize) -> usize {
-        let known = self.taped.as_ref().and_then(|taped| {
-            let (place, _) = taped.next?;
-            let ends = taped.tape.ends.borrow();
-            let mut at_place = ends.iter().filter(|end| end.place == place);
-            at_place.find_map(|end| match end.made {
-                Made::Count(count) if end.outputs == outputs => Some(count),
-                _ => None,
-            })
+        let known = self.end_by_tape(outputs, |made| match made {
+            Made::Count(count) => Some(*count),
+            _ => None,
         });
         known.unwrap_or_else(|| {
             let count = count();
             self.keep_end(outputs, || Made::Count(count));
             count
         })
+    }
+
+    /// Returns whether nothing in some values depended on time alone at the same place of the tape.
+    pub(super) fn are_untimed_by_tape(&self, outputs: &[Value]) -> bool {
+        let untimed = |made: &mut Made| matches!(made, Made::Untimed).then_some(());
+        self.end_by_tape(outputs, untimed).is_some()
+    }
+
+    /// Keeps with the tape that nothing in some values depends on time alone.
+    pub(super) fn keep_untimed(&self, outputs: &[Value]) {
+        self.keep_end(outputs, || Made::Untimed);
     }
 
     fn keep_end(&self, outputs: &[Value], made: impl FnOnce() -> Made) {
