@@ -15,7 +15,7 @@ use crate::scene::configuration::Configuration;
 use crate::space::Frame;
 use std::sync::Arc;
 
-/// What assembly begins with, beside the model.
+/// The scene and the numbers that assembly begins with.
 #[derive(Clone, Debug)]
 pub(super) struct Drawn {
     scene: Arc<Scene>,
@@ -25,7 +25,7 @@ pub(super) struct Drawn {
     x: Vec<f64>,
 }
 
-/// What assembly ends with, before it is asked what forces do there.
+/// The outcome of assembly, before it is asked what forces do there.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
     pub configuration: Configuration,
@@ -46,6 +46,9 @@ pub(super) struct Placed {
     found: Found,
     velocities: Velocities,
 }
+
+/// An assembly, and what it began and ended with where it has been done anew.
+pub(super) type Assembled = (Assembly, Option<(Drawn, Found)>);
 
 impl Drawn {
     /// Copies what assembly begins with.
@@ -113,8 +116,8 @@ impl Placed {
 }
 
 impl Session {
-    /// Returns whether the place of the present model is kept: at the start of sessions that go back
-    /// to it.
+    /// Returns whether the place of the present model is kept: at the start of sessions that go
+    /// back to it.
     pub(super) fn keeps_place(&self, inputs: &[u32]) -> bool {
         let begins = self.carried.is_none() && inputs.is_empty() && self.hooks.is_empty();
         begins && self.options.keep_start

@@ -5,7 +5,7 @@ use super::carried::{Carried, has_new_unknowns, moved};
 use super::kept::Prepared;
 use super::limit::SetUp;
 use super::phase::Phase;
-use super::placed::{Drawn, Found, Placed, Velocities};
+use super::placed::{Assembled, Drawn, Found, Placed, Velocities};
 use super::shells;
 use super::spline_range::{SplineCall, spline_calls};
 use super::state_at_start::Start;
@@ -202,7 +202,7 @@ impl Session {
         &mut self,
         start: &mut Start,
         before: Option<&Placed>,
-    ) -> Result<(Assembly, Option<(Drawn, Found)>), Vec<Diagnostic>> {
+    ) -> Result<Assembled, Vec<Diagnostic>> {
         // the dataset
         if start.mode != KINEMATIC && start.mode != STATIC {
             placement::initial_joints(&start.scene, &self.model, &mut start.q);

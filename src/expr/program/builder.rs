@@ -9,7 +9,6 @@ use super::hashing::HashMap;
 use super::input::Input;
 use super::node::{Node, Value};
 use super::operation::{BinaryOp, Comparison, UnaryOp, arithmetic_if};
-use super::structure;
 use super::tape::Taped;
 use crate::expr::functions::Function;
 use crate::scalar::{Scalar, Table};
@@ -97,15 +96,6 @@ impl Builder {
             slots: vec![(0, EMPTY); 64],
             probes: 0,
             taped: None,
-        }
-    }
-
-    /// Makes an empty builder that follows the tape of the one before at its place, where the
-    /// thread looks for structures (`tape.rs`).
-    pub(crate) fn again_or_new(folding: Folding) -> Self {
-        Self {
-            taped: structure::tape().map(Box::new),
-            ..Self::new(folding)
         }
     }
 

@@ -27,6 +27,7 @@ mod code;
 mod dependence;
 mod display;
 mod expand;
+mod follow;
 mod gradient;
 mod guard;
 mod hashing;

@@ -11,8 +11,8 @@ const NEARLY_ALL: f64 = 0.8;
 /// Place of a node that is not needed.
 const NONE: Value = Value(u32::MAX);
 
-/// The part of a builder that some values need. Its nodes stand in the same order; it is there to be
-/// read, as it does not find equal nodes again.
+/// The part of a builder that some values need. Its nodes stand in the same order; it is there to
+/// be read, as it does not find equal nodes again.
 pub(super) struct Part {
     pub builder: Builder,
     /// these values in it

@@ -7,13 +7,13 @@
 //! with those of before, whose shape they take. They are the programs that would have been made, to
 //! the last instruction.
 
-use super::builder::Builder;
+use super::builder::{Builder, Folding};
 use super::hashing::HashMap;
 use super::input::Input;
 use super::node::{Node, Value};
 use super::run::Program;
 use super::schedule;
-use super::tape::{Tape, Taped};
+use super::tape::{Shelf, Taped};
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -33,9 +33,8 @@ pub(crate) struct Structures(Arc<Mutex<Met>>);
 struct Met {
     by_hash: HashMap<u64, Vec<Structure>>,
     generation: u32,
-    /// tapes of the builders of a generation, in the order in which they were made; `None`: it is
-    /// in a builder
-    tapes: Vec<Option<Tape>>,
+    /// tapes of the builders of a generation
+    tapes: Shelf,
     /// number of builders that were made in this generation
     n_builders: usize,
 }
@@ -83,31 +82,26 @@ impl Structures {
             !alike.is_empty()
         });
     }
-
-    /// Takes a tape back that a builder had.
-    pub(super) fn put_back(&self, place: usize, tape: Tape) {
-        let mut met = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(home) = met.tapes.get_mut(place) {
-            *home = Some(tape);
-        }
-    }
 }
 
 /// Returns a tape for the next builder, where this thread looks for structures.
-pub(super) fn tape() -> Option<Taped> {
+fn tape() -> Option<Taped> {
     let structures = PRESENT.with(|present| present.borrow().clone())?;
     let mut met = structures.0.lock().unwrap_or_else(PoisonError::into_inner);
     let place = met.n_builders;
     met.n_builders += 1;
-    if met.tapes.len() <= place {
-        met.tapes.push(None);
-    }
-    let tape = met.tapes[place].take();
-    drop(met);
-    Some(Taped::new(tape, structures, place))
+    Some(met.tapes.take(place))
 }
 
 impl Builder {
+    /// Makes an empty builder that follows the tape of the one before at its place, where this
+    /// thread looks for structures.
+    pub(crate) fn again_or_new(folding: Folding) -> Self {
+        let mut builder = Self::new(folding);
+        builder.taped = tape().map(Box::new);
+        builder
+    }
+
     /// Returns the program that computes these values, and nothing else.
     ///
     /// Its inputs are those it needs, in the order in which the builder was asked for them.
@@ -214,7 +208,7 @@ fn hash(builder: &Builder, outputs: &[Value]) -> u64 {
 mod tests {
     use super::*;
     use crate::expr::functions::Function;
-    use crate::expr::program::{BinaryOp, Comparison, Engine, Folding, UnaryOp, Work};
+    use crate::expr::program::{BinaryOp, Comparison, Engine, UnaryOp, Work};
 
     /// Random numbers by a linear congruence.
     struct Random(u64);
