@@ -4,7 +4,7 @@
 use super::row::{canonical, element_name};
 use super::statement::STATEMENTS;
 use super::value::{Number, Value};
-use crate::diagnostic::{Diagnostic, Error, Severity};
+use crate::diagnostic::{Diagnostic, Error};
 use crate::model::{Formula, Model};
 
 impl Model {
@@ -39,8 +39,10 @@ impl Model {
     /// # Errors
     /// The errors among what [`Model::check`] finds.
     pub(crate) fn checked(&self) -> Result<(), Error> {
-        let mut wrong = self.check();
-        wrong.retain(|d| d.severity == Severity::Error);
+        let mut wrong = not_finite(self);
+        if wrong.is_empty() {
+            wrong = self.errors();
+        }
         if wrong.is_empty() {
             return Ok(());
         }

@@ -13,6 +13,7 @@ mod constraint;
 mod element;
 mod force;
 pub(crate) mod geometry;
+mod loads;
 mod many_requests;
 mod output;
 pub mod reference;

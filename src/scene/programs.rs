@@ -82,7 +82,7 @@ where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>>,
     E: FnOnce(&mut Builder, Vec<Value>) -> Vec<Vec<Value>>,
 {
-    let builder = RefCell::new(Builder::new(Folding::Structural));
+    let builder = RefCell::new(Builder::again_or_new(Folding::Structural));
     let row = LongRow {
         numbers: scene.layout,
         n_more,

@@ -13,7 +13,7 @@ use std::cell::{OnceCell, RefCell};
 
 /// Returns the builder of a recording of equations.
 pub fn builder() -> RefCell<Builder> {
-    RefCell::new(Builder::new(Folding::Structural))
+    RefCell::new(Builder::again_or_new(Folding::Structural))
 }
 
 /// One instant of a scene whose values become programs, one after the other.

@@ -154,6 +154,15 @@ fn rows_that_are_recorded_again_are_runs_of_the_changed_model_alone_to_the_bit()
             point[k] = VALUES[k % VALUES.len()];
             points.push(point);
         }
+        // each number at a place and under loads of their own
+        let shifted: Vec<f64> = given.iter().map(|x| x * 1.02).collect();
+        for k in 0..given.len() {
+            for factor in [1.0, 0.99] {
+                let mut point = shifted.clone();
+                point[k] *= factor;
+                points.push(point);
+            }
+        }
         // all at once, and the first again
         points.push(given.iter().map(|x| x * 1.003).collect());
         points.push(given);
@@ -198,5 +207,5 @@ fn rows_that_are_recorded_again_are_runs_of_the_changed_model_alone_to_the_bit()
             assert_eq!(found, expected, "{name} {:?}", row.values);
         }
     }
-    assert!(completed > 80, "{completed} runs were completed");
+    assert!(completed > 130, "{completed} runs were completed");
 }

@@ -3,6 +3,7 @@
 //! that commands change. Nothing is compiled, assembled or recorded for those.
 
 use super::Session;
+use super::placed::Placed;
 use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
 use crate::expr::program::Program;
@@ -82,6 +83,8 @@ pub(super) struct Starts {
     pub systems: BTreeMap<u32, Kept>,
     /// of dynamics, where there is no freedom
     still: Option<Still>,
+    /// where models were assembled, by their MODE
+    pub placed: BTreeMap<u32, Arc<Placed>>,
 }
 
 /// A model that has been brought into its state for dynamics.
@@ -91,7 +94,11 @@ pub(super) enum Prepared {
 }
 
 /// Looks at a model while it lacks the numbers that are external inputs of its scene.
-fn without_constants<T>(model: &mut Model, scene: &Scene, look: impl FnOnce(&Model) -> T) -> T {
+pub(super) fn without_constants<T>(
+    model: &mut Model,
+    scene: &Scene,
+    look: impl FnOnce(&mut Model) -> T,
+) -> T {
     let mut taken = Vec::new();
     for what in &scene.external_inputs {
         if let ExternalInput::Constant(id) = what

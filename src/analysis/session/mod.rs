@@ -17,6 +17,7 @@ mod limit;
 mod outcome;
 mod over_time;
 mod phase;
+mod placed;
 mod preview;
 mod requests;
 mod rows;

@@ -5,6 +5,7 @@ use super::carried::{Carried, has_new_unknowns, moved};
 use super::kept::Prepared;
 use super::limit::SetUp;
 use super::phase::Phase;
+use super::placed::{Assembled, Drawn, Found, Placed, Velocities};
 use super::shells;
 use super::spline_range::{SplineCall, spline_calls};
 use super::state_at_start::Start;
@@ -80,7 +81,11 @@ impl Session {
         watch: &mut dyn Watch,
     ) -> Result<(Start, Vec<f64>, Assembly), Vec<Diagnostic>> {
         self.columns_program = None;
-        self.model.checked()?;
+        // a model that differs in its loads alone from one that was assembled is as right as that
+        let before = self.placed_before(mode, inputs);
+        if before.is_none() {
+            self.model.checked()?;
+        }
         self.check_closures()?;
         self.check_choice()?;
         self.may_go_on(SetUp::Reading, watch)?;
@@ -91,22 +96,22 @@ impl Session {
         let phase = Phase::begin();
         let mut start = Start::new(scene, mode, self.time());
         let first = self.carried.is_none();
-        let mut assembly = if first {
-            self.assemble(&mut start)?
+        let (mut assembly, found) = if first {
+            self.assemble(&mut start, before.as_deref())?
         } else {
-            self.go_on(&mut start)?
+            (self.go_on(&mut start)?, None)
         };
         self.may_go_on(SetUp::Assembling, watch)?;
         (start.configuration).begin_states(&start.scene, &mut start.x);
         start.begin_turns(self.carried.as_ref());
-        let v = self.velocities(&mut start, moved.as_ref())?;
-        if first && (mode == DYNAMIC || mode == INITIAL_CONDITIONS) {
-            let (here, t, q, x) = (start.here(), start.t, &start.q, &start.x);
-            let unmet = velocities::unmet(here, &self.model, t, (q, &v, x));
-            assembly
-                .warnings
-                .extend(unmet.into_iter().map(Warning::from));
+        let (v, unmet) = match before.filter(|_| found.is_none()) {
+            Some(placed) => placed.velocities(),
+            None => self.velocities(&mut start, moved.as_ref())?,
+        };
+        if let Some(found) = found.filter(|_| self.keeps_place(inputs)) {
+            self.keep_place(mode, found, (v.clone(), unmet.clone()));
         }
+        assembly.warnings.extend(unmet);
         phase.end(&mut self.run.record.seconds, |s| &mut s.assemble);
         self.may_go_on(SetUp::Velocities, watch)?;
         Ok((start, v, assembly))
@@ -190,24 +195,57 @@ impl Session {
         start.positions()
     }
 
-    /// Assembles the first state: from the dataset, to initial conditions as far as rows let it.
-    fn assemble(&mut self, start: &mut Start) -> Result<Assembly, Vec<Diagnostic>> {
-        let mode = start.mode;
-        let joints = mode == DYNAMIC || mode == INITIAL_CONDITIONS;
-        let moves = mode != KINEMATIC && mode != STATIC;
+    /// Assembles the first state: from the dataset, to initial conditions as far as rows let it; or
+    /// puts it where another was assembled that began with the same. Returns what assembly began
+    /// and ended with, too, where it has been done.
+    fn assemble(
+        &mut self,
+        start: &mut Start,
+        before: Option<&Placed>,
+    ) -> Result<Assembled, Vec<Diagnostic>> {
         // the dataset
-        let orders = if joints {
-            misalignment::orders(&start.scene, &self.model)
-        } else {
-            Vec::new()
-        };
-        if moves {
+        if start.mode != KINEMATIC && start.mode != STATIC {
             placement::initial_joints(&start.scene, &self.model, &mut start.q);
         }
         for m in 0..start.scene.motions.len() {
             self.initial_motion(&start.scene, m, &mut start.x);
         }
         start.configuration.external = self.external(start.here(), start.t, &start.q, &start.x)?;
+        let (mut assembly, found) = match before.and_then(|placed| placed.put(start)) {
+            Some(assembly) => (assembly, None),
+            None => {
+                let drawn = Drawn::of(start);
+                let assembly = self.onto_rows(start)?;
+                let found = Found {
+                    configuration: start.configuration.clone(),
+                    q: start.q.clone(),
+                    assembly: assembly.clone(),
+                };
+                (assembly, Some((drawn, found)))
+            }
+        };
+        // what forces do there
+        let (here, t, q, x) = (start.here(), start.t, &start.q, &start.x);
+        let still = vec![0.0; here.layout.n_v];
+        let numbers = assemble::numbers(here, t, q, &still, x);
+        let coincident = coincident::lines(here, &numbers)?;
+        let deep = embedded::contacts(here, &numbers);
+        let of_forces = coincident.into_iter().chain(deep).map(Warning::from);
+        assembly.warnings.extend(of_forces);
+        Ok((assembly, found))
+    }
+
+    /// Moves the first state onto the rows. Masses, springs and gravity have no say in it: what
+    /// this is of one model is kept for others.
+    fn onto_rows(&self, start: &mut Start) -> Result<Assembly, Vec<Diagnostic>> {
+        let mode = start.mode;
+        let joints = mode == DYNAMIC || mode == INITIAL_CONDITIONS;
+        let moves = mode != KINEMATIC && mode != STATIC;
+        let orders = if joints {
+            misalignment::orders(&start.scene, &self.model)
+        } else {
+            Vec::new()
+        };
         let misaligned = misalignment::misaligned(&start.scene, &self.model);
         let conditions = if moves {
             initial_conditions::collect(&start.scene, &self.model)
@@ -226,15 +264,28 @@ impl Session {
         let still = vec![0.0; here.layout.n_v];
         let numbers = assemble::numbers(here, t, q, &still, x);
         let turned = misalignment::turned(here, &self.model, &numbers, moves);
-        let coincident = coincident::lines(here, &numbers)?;
-        let deep = embedded::contacts(here, &numbers);
-        let of_assembly = turned.into_iter().chain(coincident).chain(deep);
-        warnings.extend(of_assembly.map(Warning::from));
+        warnings.extend(turned.into_iter().map(Warning::from));
         Ok(assembly)
     }
 
-    /// Returns the velocities to start with: those of before, else those of the model on the rows.
+    /// Returns the velocities to start with: those of before, else those of the model on the rows;
+    /// and the warnings of those that the model gives and that are not met.
     fn velocities(
+        &self,
+        start: &mut Start,
+        moved: Option<&Model>,
+    ) -> Result<Velocities, Vec<Diagnostic>> {
+        let mode = start.mode;
+        let v = self.velocities_on_rows(start, moved)?;
+        if self.carried.is_some() || mode != DYNAMIC && mode != INITIAL_CONDITIONS {
+            return Ok((v, Vec::new()));
+        }
+        let (here, t, q, x) = (start.here(), start.t, &start.q, &start.x);
+        let unmet = velocities::unmet(here, &self.model, t, (q, &v, x));
+        Ok((v, unmet.into_iter().map(Warning::from).collect()))
+    }
+
+    fn velocities_on_rows(
         &self,
         start: &mut Start,
         moved: Option<&Model>,

@@ -9,6 +9,7 @@ use super::hashing::HashMap;
 use super::input::Input;
 use super::node::{Node, Value};
 use super::operation::{BinaryOp, Comparison, UnaryOp, arithmetic_if};
+use super::tape::Taped;
 use crate::expr::functions::Function;
 use crate::scalar::{Scalar, Table};
 use std::sync::Arc;
@@ -76,6 +77,8 @@ pub struct Builder {
     slots: Vec<(u32, u32)>,
     /// how often a slot was looked at: tests see that recording is linear
     pub(super) probes: u64,
+    /// what was asked before, or is asked now
+    pub(super) taped: Option<Box<Taped>>,
 }
 
 const EMPTY: u32 = u32::MAX;
@@ -92,6 +95,7 @@ impl Builder {
             input_nodes: HashMap::default(),
             slots: vec![(0, EMPTY); 64],
             probes: 0,
+            taped: None,
         }
     }
 
@@ -101,6 +105,11 @@ impl Builder {
     }
     /// Sets how far it simplifies from now on; what is recorded stays.
     pub fn set_folding(&mut self, folding: Folding) {
+        if folding != self.folding {
+            // a tape is of one folding
+            self.leave_tape();
+            self.taped = None;
+        }
         self.folding = folding;
     }
     /// Returns how many nodes are recorded, needed or not.
@@ -135,6 +144,7 @@ impl Builder {
         if let Some(&v) = self.input_nodes.get(&input) {
             return v;
         }
+        self.tape_input(input);
         let k = self.inputs.len() as u32;
         self.inputs.push(input);
         let v = self.push(Node::Input(k));
@@ -144,6 +154,7 @@ impl Builder {
 
     /// Records a number.
     pub fn constant(&mut self, x: f64) -> Value {
+        self.reads_number();
         self.intern(Node::Constant(x.to_bits()))
     }
 
@@ -180,6 +191,22 @@ impl Builder {
         if let (Some(x), Some(y)) = (ca, cb) {
             return self.constant(op.apply(x, y));
         }
+        if ca.is_some() || cb.is_some() {
+            self.reads_number();
+            return self.binary_anew(op, a, b, [ca, cb]);
+        }
+        self.binary_by_tape(op, a, b)
+    }
+
+    /// Records an operation on two values, whatever was asked before. Not both are constant.
+    #[inline]
+    pub(super) fn binary_anew(
+        &mut self,
+        op: BinaryOp,
+        a: Value,
+        b: Value,
+        [ca, cb]: [Option<f64>; 2],
+    ) -> Value {
         match self.simpler(op, a, b, ca, cb) {
             Some(v) => v,
             None => {
@@ -546,6 +573,20 @@ impl Builder {
     /// Returns the node, or the equal one that is there already. Arguments of a list node must be
     /// the last of the list.
     pub(super) fn intern(&mut self, node: Node) -> Value {
+        if self.taped.is_none() {
+            return self.found_or_new(node);
+        }
+        if let Some(answer) = self.node_by_tape(node) {
+            return answer;
+        }
+        self.leave_tape();
+        self.write_list(&node);
+        let answer = self.found_or_new(node);
+        self.write_node(node, answer);
+        answer
+    }
+
+    fn found_or_new(&mut self, node: Node) -> Value {
         if (self.nodes.len() + 1) * 4 > self.slots.len() * 3 {
             self.grow();
         }
@@ -561,12 +602,30 @@ impl Builder {
                 return v;
             }
             if known == hash && self.equal(&self.nodes[found as usize], &node) {
-                if let Some(range) = self.list(&node) {
+                if let Some(range) = node.list() {
                     self.arguments.truncate(range.start);
                 }
                 return Value(found);
             }
             slot = (slot + 1) & mask;
+        }
+    }
+
+    /// Finds a slot for each node, after a tape has told where they are.
+    pub(super) fn find_again(&mut self) {
+        let n = self.nodes.len() + 1;
+        self.slots = vec![(0, EMPTY); (n * 2).next_power_of_two().max(64)];
+        let mask = self.slots.len() - 1;
+        for (k, node) in self.nodes.iter().enumerate() {
+            if matches!(node, Node::Input(_)) {
+                continue;
+            }
+            let hash = self.hash(node) as u32;
+            let mut slot = hash as usize & mask;
+            while self.slots[slot].1 != EMPTY {
+                slot = (slot + 1) & mask;
+            }
+            self.slots[slot] = (hash, k as u32);
         }
     }
 
@@ -583,22 +642,13 @@ impl Builder {
         self.slots = slots;
     }
 
-    /// Returns where the operands of a node stand in the list of arguments.
-    pub(super) fn list(&self, node: &Node) -> Option<std::ops::Range<usize>> {
-        match *node {
-            Node::If(first) => Some(first as usize..first as usize + 4),
-            Node::Call { first, count, .. } => Some(first as usize..(first + count) as usize),
-            _ => None,
-        }
-    }
-
     /// Calls `f` with every operand of a node, in order.
     pub(super) fn operands(&self, node: &Node, mut f: impl FnMut(Value)) {
         match *node {
             Node::Constant(_) | Node::Input(_) => {}
             Node::Unary(_, x) | Node::Whole(x, _) | Node::Lookup { x, .. } => f(x),
             Node::Partial { call, .. } => {
-                for &v in &self.arguments[self.list(&self.nodes[call.index()]).unwrap_or(0..0)] {
+                for &v in &self.arguments[self.nodes[call.index()].list().unwrap_or(0..0)] {
                     f(v);
                 }
             }
@@ -612,7 +662,7 @@ impl Builder {
                 f(no);
             }
             Node::If(_) | Node::Call { .. } => {
-                for &v in &self.arguments[self.list(node).unwrap_or(0..0)] {
+                for &v in &self.arguments[node.list().unwrap_or(0..0)] {
                     f(v);
                 }
             }
@@ -630,7 +680,7 @@ impl Builder {
     }
 
     fn same_lists(&self, a: &Node, b: &Node) -> bool {
-        match (self.list(a), self.list(b)) {
+        match (a.list(), b.list()) {
             (Some(a), Some(b)) => self.arguments[a] == self.arguments[b],
             _ => false,
         }
@@ -664,7 +714,7 @@ impl Builder {
     }
 
     fn hash_list(&self, seed: u64, node: &Node, mix: impl Fn(u64, u64) -> u64) -> u64 {
-        self.arguments[self.list(node).unwrap_or(0..0)]
+        self.arguments[node.list().unwrap_or(0..0)]
             .iter()
             .fold(seed, |h, v| mix(h, u64::from(v.0)))
     }

@@ -222,7 +222,7 @@ impl<'b> Adjoint<'b> {
                 }
             }
             node @ Node::If(_) => {
-                let list = self.builder.list(&node).unwrap_or(0..0);
+                let list = node.list().unwrap_or(0..0);
                 let sides: Vec<Value> = self.builder.arguments[list]
                     .iter()
                     .skip(1)
@@ -239,7 +239,7 @@ impl<'b> Adjoint<'b> {
                 self.add(x, here, part);
             }
             node @ Node::Call { function, .. } => {
-                let list = self.builder.list(&node).unwrap_or(0..0);
+                let list = node.list().unwrap_or(0..0);
                 let args = self.builder.arguments[list].to_vec();
                 self.call(function, &args, v, bar);
             }
@@ -408,11 +408,7 @@ impl<'b> Adjoint<'b> {
             let at = |k: u8| if side.side == k { contribution } else { zero };
             contribution = match node {
                 Node::Select(condition, ..) => self.builder.select(condition, at(0), at(1)),
-                node => match self
-                    .builder
-                    .list(&node)
-                    .map(|list| self.builder.arguments[list.start])
-                {
+                node => match node.list().map(|list| self.builder.arguments[list.start]) {
                     Some(selector) => self.builder.arithmetic_if(selector, at(0), at(1), at(2)),
                     None => contribution,
                 },

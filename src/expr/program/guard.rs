@@ -70,7 +70,7 @@ impl Guards {
                     guards.open(Value(k as u32), condition, here, &[yes, no]);
                 }
                 node @ Node::If(_) => {
-                    let list = builder.list(&node).unwrap_or(0..0);
+                    let list = node.list().unwrap_or(0..0);
                     if let &[selector, ref sides @ ..] = &builder.arguments[list] {
                         guards.need(selector, here);
                         guards.open(Value(k as u32), selector, here, sides);

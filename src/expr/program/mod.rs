@@ -27,6 +27,7 @@ mod code;
 mod dependence;
 mod display;
 mod expand;
+mod follow;
 mod gradient;
 mod guard;
 mod hashing;
@@ -50,6 +51,7 @@ mod schedule;
 )]
 mod structure;
 mod switching;
+mod tape;
 #[cfg(test)]
 mod tests;
 #[cfg(feature = "solver")]

@@ -44,3 +44,14 @@ pub(crate) enum Node {
         k: u32,
     },
 }
+
+impl Node {
+    /// Returns where its operands stand in the list of arguments.
+    pub(super) fn list(&self) -> Option<std::ops::Range<usize>> {
+        match *self {
+            Node::If(first) => Some(first as usize..first as usize + 4),
+            Node::Call { first, count, .. } => Some(first as usize..(first + count) as usize),
+            _ => None,
+        }
+    }
+}

@@ -109,6 +109,10 @@ fn inlined(builder: &Builder, outputs: &[Value], is_needed: impl Fn(usize) -> bo
 impl Builder {
     /// Returns how many operations the program of some values takes, without making it.
     pub fn count_operations(&self, outputs: &[Value]) -> usize {
+        self.count_by_tape(outputs, || self.counted_operations(outputs))
+    }
+
+    fn counted_operations(&self, outputs: &[Value]) -> usize {
         let needed = self.needed(outputs, self.nodes.len());
         let inlined = inlined(self, outputs, |k| needed[k]);
         let is_operation = |k: &usize| {
@@ -432,8 +436,8 @@ impl<'a> Walk<'a> {
 pub(super) fn side_operands(builder: &Builder, node: &Node) -> Vec<Value> {
     match *node {
         Node::Select(_, yes, no) => vec![yes, no],
-        Node::If(_) => builder
-            .list(node)
+        Node::If(_) => node
+            .list()
             .map_or(Vec::new(), |list| builder.arguments[list][1..].to_vec()),
         _ => Vec::new(),
     }

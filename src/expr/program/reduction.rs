@@ -11,11 +11,19 @@ const NEARLY_ALL: f64 = 0.8;
 /// Place of a node that is not needed.
 const NONE: Value = Value(u32::MAX);
 
+/// The part of a builder that some values need. Its nodes stand in the same order; it is there to
+/// be read, as it does not find equal nodes again.
+pub(super) struct Part {
+    pub builder: Builder,
+    /// these values in it
+    pub values: Vec<Value>,
+    /// what its nodes are in the whole
+    pub origins: Vec<Value>,
+}
+
 impl Builder {
-    /// Returns the part of the builder that some values need, and these values in it. Its nodes
-    /// stand in the same order; it is there to be read, as it does not find equal nodes again.
-    /// `None`: they need nearly all of it.
-    pub(super) fn reduced(&self, values: &[Value]) -> Option<(Builder, Vec<Value>)> {
+    /// Returns the part of the builder that some values need. `None`: they need nearly all of it.
+    pub(super) fn reduced(&self, values: &[Value]) -> Option<Part> {
         let n = values.iter().map(|v| v.index() + 1).max().unwrap_or(0);
         let needed = self.read(values, n);
         let n_needed = needed.iter().filter(|&&n| n).count();
@@ -27,13 +35,18 @@ impl Builder {
         part.tables.clone_from(&self.tables);
         part.nodes.reserve(n_needed);
         let mut places = vec![NONE; n];
+        let mut origins = Vec::with_capacity(n_needed);
         for k in (0..n).filter(|&k| needed[k]) {
             let node = self.copied(&self.nodes[k], &places, &mut part.arguments);
             places[k] = Value(part.nodes.len() as u32);
             part.nodes.push(node);
+            origins.push(Value(k as u32));
         }
-        let values = values.iter().map(|v| places[v.index()]).collect();
-        Some((part, values))
+        Some(Part {
+            builder: part,
+            values: values.iter().map(|v| places[v.index()]).collect(),
+            origins,
+        })
     }
 
     /// Returns how many operations a value takes.
@@ -62,7 +75,7 @@ impl Builder {
     pub(super) fn copied(&self, node: &Node, places: &[Value], arguments: &mut Vec<Value>) -> Node {
         let of = |v: Value| places[v.index()];
         let listed = arguments.len() as u32;
-        if let Some(range) = self.list(node) {
+        if let Some(range) = node.list() {
             arguments.extend(self.arguments[range].iter().map(|&v| of(v)));
         }
         match *node {

@@ -7,12 +7,13 @@
 //! with those of before, whose shape they take. They are the programs that would have been made, to
 //! the last instruction.
 
-use super::builder::Builder;
+use super::builder::{Builder, Folding};
 use super::hashing::HashMap;
 use super::input::Input;
 use super::node::{Node, Value};
 use super::run::Program;
 use super::schedule;
+use super::tape::{Shelf, Taped};
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -32,6 +33,10 @@ pub(crate) struct Structures(Arc<Mutex<Met>>);
 struct Met {
     by_hash: HashMap<u64, Vec<Structure>>,
     generation: u32,
+    /// tapes of the builders of a generation
+    tapes: Shelf,
+    /// number of builders that were made in this generation
+    n_builders: usize,
 }
 
 /// Nodes, what is asked of them, and what was made of them.
@@ -70,6 +75,7 @@ impl Structures {
     pub(crate) fn next_generation(&self) {
         let mut met = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         met.generation += 1;
+        met.n_builders = 0;
         let now = met.generation;
         met.by_hash.retain(|_, alike| {
             alike.retain(|s| s.generation + KEPT >= now);
@@ -78,7 +84,24 @@ impl Structures {
     }
 }
 
+/// Returns a tape for the next builder, where this thread looks for structures.
+fn tape() -> Option<Taped> {
+    let structures = PRESENT.with(|present| present.borrow().clone())?;
+    let mut met = structures.0.lock().unwrap_or_else(PoisonError::into_inner);
+    let place = met.n_builders;
+    met.n_builders += 1;
+    Some(met.tapes.take(place))
+}
+
 impl Builder {
+    /// Makes an empty builder that follows the tape of the one before at its place, where this
+    /// thread looks for structures.
+    pub(crate) fn again_or_new(folding: Folding) -> Self {
+        let mut builder = Self::new(folding);
+        builder.taped = tape().map(Box::new);
+        builder
+    }
+
     /// Returns the program that computes these values, and nothing else.
     ///
     /// Its inputs are those it needs, in the order in which the builder was asked for them.
@@ -96,18 +119,31 @@ impl Builder {
     }
 
     fn finished(&self, outputs: &[Value], layout: Option<&[Input]>) -> Program {
-        match self.reduced(outputs) {
-            Some((part, outputs)) => program(&part, &outputs, layout),
-            None => program(self, outputs, layout),
+        if let Some(program) = self.program_by_tape(outputs, layout) {
+            return program;
         }
+        let (program, constants) = match self.reduced(outputs) {
+            Some(part) => {
+                let (program, constants) = program(&part.builder, &part.values, layout);
+                let origin = |v: Value| part.origins[v.index()];
+                (program, constants.into_iter().map(origin).collect())
+            }
+            None => program(self, outputs, layout),
+        };
+        self.keep_program(outputs, layout, (&program, constants));
+        program
     }
 }
 
 /// Returns the program that computes `outputs`, with the shape of one that was made before, where
-/// there is one.
-fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Program {
+/// there is one; and the nodes that are its constants, in its order.
+fn program(
+    builder: &Builder,
+    outputs: &[Value],
+    layout: Option<&[Input]>,
+) -> (Program, Vec<Value>) {
     let Some(structures) = PRESENT.with(|present| present.borrow().clone()) else {
-        return schedule::program(builder, outputs, layout).0;
+        return schedule::program(builder, outputs, layout);
     };
     let mut met = structures.0.lock().unwrap_or_else(PoisonError::into_inner);
     let now = met.generation;
@@ -118,7 +154,7 @@ fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Pr
         let program = found.program.with_constants(constants, &builder.tables);
         // what the next one may share is likelier that of the last one than of the first
         found.program = program.clone();
-        return program;
+        return (program, found.constants.clone());
     }
     let (program, constants) = schedule::program(builder, outputs, layout);
     alike.push(Structure {
@@ -128,10 +164,10 @@ fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Pr
         outputs: outputs.to_vec(),
         layout: layout.map(<[Input]>::to_vec),
         program: program.clone(),
-        constants,
+        constants: constants.clone(),
         generation: now,
     });
-    program
+    (program, constants)
 }
 
 impl Structure {
@@ -172,7 +208,7 @@ fn hash(builder: &Builder, outputs: &[Value]) -> u64 {
 mod tests {
     use super::*;
     use crate::expr::functions::Function;
-    use crate::expr::program::{BinaryOp, Comparison, Engine, Folding, UnaryOp, Work};
+    use crate::expr::program::{BinaryOp, Comparison, Engine, UnaryOp, Work};
 
     /// Random numbers by a linear congruence.
     struct Random(u64);

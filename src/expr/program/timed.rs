@@ -15,7 +15,12 @@ impl Builder {
     /// Values that depend on `time` alone, and are not looked up in a table, at whose levels some
     /// outputs may break. Calls are expanded; tables of many knots are left out.
     pub(crate) fn timed_breaks(&mut self, outputs: &[Value], time: Input) -> Vec<Break> {
-        let outputs = self.expanded(outputs, Expand::Calls);
+        if self.are_untimed_by_tape(outputs) {
+            return Vec::new();
+        }
+        let asked = outputs;
+        let before = self.nodes.len();
+        let outputs = self.expanded(asked, Expand::Calls);
         let n = outputs.iter().map(|v| v.index() + 1).max().unwrap_or(0);
         let mut needed = vec![false; n];
         for v in &outputs {
@@ -30,6 +35,12 @@ impl Builder {
             }
         }
         let timed = self.dependent_on(time);
+        let none = (0..n).all(|k| !(needed[k] && timed[k]));
+        if none && outputs == asked && self.nodes.len() == before {
+            // whatever the numbers are
+            self.keep_untimed(asked);
+            return Vec::new();
+        }
         found.retain(|b| timed[b.value.index()] && !b.levels.are_many());
         let mut breaks: Vec<Break> = Vec::new();
         let mut places: HashMap<Value, Vec<usize>> = HashMap::default();

@@ -26,13 +26,23 @@ mod superseded;
 mod systems;
 
 use super::*;
-use crate::diagnostic::{Diagnostic, near_names};
+use crate::diagnostic::{Diagnostic, Severity, near_names};
 
 /// Where findings go.
 type Out = Vec<Diagnostic>;
 
 /// Name of a rule and the rule.
 type Rule = (&'static str, fn(&Model, &mut Out));
+
+/// Rules that find warnings at most: who wants errors alone need not run them.
+const ONLY_WARN: &[&str] = &[
+    "forces act where asked",
+    "gravity is plausible",
+    "inertia fits its part",
+    "springs have their length",
+    "beams have their length",
+    "stiffness can be resolved",
+];
 
 /// All rules, in the order in which they run.
 pub const RULES: &[Rule] = &[
@@ -127,9 +137,26 @@ impl Model {
     /// order of the elements' lines.
     pub(crate) fn contradictions(&self) -> Vec<Diagnostic> {
         let mut out = Vec::new();
-        for (_, rule) in RULES {
+        for (name, rule) in RULES {
+            let before = out.len();
+            rule(self, &mut out);
+            let mut found = out[before..].iter();
+            debug_assert!(
+                !ONLY_WARN.contains(name) || found.all(|d| d.severity != Severity::Error),
+                "the rule \"{name}\" finds errors"
+            );
+        }
+        out.sort_by_key(|d| (d.line, d.column));
+        out
+    }
+
+    /// Returns the errors among what does not fit together, in the same order.
+    pub(crate) fn errors(&self) -> Vec<Diagnostic> {
+        let mut out = Vec::new();
+        for (_, rule) in RULES.iter().filter(|(name, _)| !ONLY_WARN.contains(name)) {
             rule(self, &mut out);
         }
+        out.retain(|d| d.severity == Severity::Error);
         out.sort_by_key(|d| (d.line, d.column));
         out
     }

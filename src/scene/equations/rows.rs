@@ -65,8 +65,20 @@ impl<S: Scalar> Equations<'_, S> {
                 })
             }),
         );
-        let rates = law.value(&I.in_time(), &J.in_time(), drive);
+        let [i_in_time, j_in_time] = self.both_in_time([i, j]);
+        let rates = law.value(&i_in_time, &j_in_time, drive);
         self.row_of((i, j), &seeded, rates)
+    }
+
+    /// Returns two markers as they move in time.
+    fn both_in_time(&self, markers: [usize; 2]) -> [Frame<Jet<S>>; 2] {
+        let mut last = self.scratch.in_time.borrow_mut();
+        if let Some((_, frames)) = last.as_ref().filter(|(of, _)| *of == markers) {
+            return *frames;
+        }
+        let frames = markers.map(|m| self.marker(m).in_time());
+        *last = Some((markers, frames));
+        frames
     }
 
     /// Returns the row between two markers from its value over duals along their twists (0–5 of I,

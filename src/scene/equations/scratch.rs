@@ -2,13 +2,17 @@
 
 use super::formulas::Opened;
 use super::{RowValue, Share, Solved, Unsupported};
+use crate::scalar::Jet;
 use crate::scene::Scene;
 use crate::scene::loops::Key;
 use crate::scene::sweep::{LinkState, Wrench};
-use crate::space::MarkerState;
+use crate::space::{Frame, MarkerState};
 use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::BTreeSet;
 use std::rc::Rc;
+
+/// Two markers, and their frames as they move in time.
+pub(super) type InTime<S> = ([usize; 2], [Frame<Jet<S>>; 2]);
 
 /// Results found so far, and questions that are open.
 pub(super) struct Scratch<S> {
@@ -16,6 +20,9 @@ pub(super) struct Scratch<S> {
     pub links: OnceCell<Vec<LinkState<S>>>,
     /// poses and velocities of markers   (n_markers)
     pub markers: RefCell<Vec<Option<MarkerState<S>>>>,
+    /// two markers as they move in time: those of the row that was evaluated last, as the rows of
+    /// a joint are of the same two
+    pub in_time: RefCell<Option<InTime<S>>>,
     /// values of formulas   (n_formulas)
     pub formulas: RefCell<Vec<Option<S>>>,
     /// rows but for formulas   (n_rows)
@@ -48,6 +55,7 @@ impl<S: Copy> Scratch<S> {
         Self {
             links: OnceCell::new(),
             markers: RefCell::new(vec![None; scene.markers.len()]),
+            in_time: RefCell::default(),
             formulas: RefCell::new(vec![None; scene.formulas.len()]),
             rows: RefCell::new(vec![None; scene.rows.len()]),
             open: RefCell::new(Opened::none(scene.formulas.len())),
