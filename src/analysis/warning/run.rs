@@ -249,18 +249,7 @@ impl RunWarning {
                 error,
                 below,
                 steps,
-            } if below * FEW_STEPS < *steps => format!(
-                "an error of {error} could not be kept in {below} of {steps} steps: shorter ones were \
-                 no better, as the rates are rounded or change without a slope there"
-            ),
-            RunWarning::BelowRounding {
-                error,
-                below,
-                steps,
-            } => format!(
-                "an error of {error} is below rounding: it was asked for in vain in {below} of {steps} \
-                 steps, which are as exact as rounding permits"
-            ),
+            } => in_vain(*error, *below, *steps),
             RunWarning::RoundingAddsUp { error, reached } => format!(
                 "an error of {error} is below rounding: that of the accelerations alone adds up to \
                  about {reached:.0e} of the largest velocities"
@@ -304,6 +293,20 @@ fn after_jump(quantity: Quantity) -> &'static str {
         Quantity::Displacement | Quantity::Velocity => "it runs piecewise",
         Quantity::Acceleration => "forces jump there",
     }
+}
+
+/// Returns in how many of all steps an error was asked for in vain.
+fn in_vain(error: f64, below: usize, steps: usize) -> String {
+    if below * FEW_STEPS < steps {
+        return format!(
+            "an error of {error} could not be kept in {below} of {steps} steps: shorter ones were no \
+             better, as the rates are rounded or change without a slope there"
+        );
+    }
+    format!(
+        "an error of {error} is below rounding: it was asked for in vain in {below} of {steps} steps, \
+         which are as exact as rounding permits"
+    )
 }
 
 /// Returns by how much the energy of a motion grows; `fed`: the force before it feeds the motion.
