@@ -30,7 +30,7 @@
 use super::control::{
     self, Attempts, Permitted, Rejection, Stagnation, Weights, worst, worst_index,
 };
-use super::corrector::{Corrector, Iterate};
+use super::corrector::{self, Corrector, Iterate};
 use super::{Dae, Failure, Method, Options, Reason, Stats, Step, Stop};
 
 /// Highest order that is stable enough.
@@ -207,7 +207,8 @@ impl Bdf {
         // a first step of order 1: its error h² ÿ/2 is a guess from the time scale y/ẏ
         let typical = self.weights.typical();
         let speed = worst((0..y.len()).map(|i| {
-            self.controlled[i] * self.next.ydot[i] / self.next.y[i].abs().max(typical[i])
+            let way = self.next.y[i] - self.weights.origin()[i];
+            self.controlled[i] * self.next.ydot[i] / way.abs().max(typical[i])
         }));
         let guess = self.permitted.now().sqrt() * if speed > 1e-8 { 0.1 / speed } else { 1e-3 };
         let h = self
@@ -288,9 +289,11 @@ impl Bdf {
         }
         let tolerance = self.permitted.now();
         self.next.is_eased = self.permitted.is_raised();
+        self.next.rounding = corrector::ROUNDING / tolerance;
         let Iterate { y, scale, .. } = &mut self.next;
         for (i, scale) in scale.iter_mut().enumerate() {
-            let (m, y) = (self.weights.magnitude()[i], y[i].abs());
+            let way = y[i] - self.weights.origin()[i];
+            let (m, y) = (self.weights.magnitude()[i], way.abs());
             *scale = 1.0 / (tolerance * if y > m { y } else { m });
         }
     }

@@ -9,7 +9,9 @@
 //! ```
 //!
 //! with the requested tolerance E, φ of [`Options::floor`], and j over the unknowns of the same
-//! group as i ([`Relation`]).
+//! group as i ([`Relation`]). A coordinate that is large only because of where the origin is
+//! ([`Relation::from_beginning`]) counts as |yᵢ − yᵢ(0)|, so that moving a whole model changes
+//! nothing, and as 50 roundings of it over E at least: no request is finer than its digits.
 //!
 //! Results are judged column by column against the largest value of the column, so the largest
 //! magnitude so far is the right measure: an oscillation through zero costs nothing there. A
@@ -41,6 +43,12 @@ pub struct Weights {
     relations: Vec<Relation>,
     /// upper bounds of the magnitudes   (n)
     most: Vec<f64>,
+    /// values from which sizes are measured   (n)
+    origin: Vec<f64>,
+    /// whether the unknown is measured from where it began   (n)
+    from_beginning: Vec<bool>,
+    /// whether rounding makes a magnitude larger than the motion does
+    coarse: bool,
     /// largest magnitude of each group   (groups)
     largest: Vec<f64>,
     /// the courses by which transients are known   (n)
@@ -49,6 +57,8 @@ pub struct Weights {
     seen: f64,
 }
 
+/// Roundings of a coordinate that its permitted error is at least.
+const ROUNDINGS: f64 = 50.0;
 /// Levels of size that are told apart, from a magnitude down.
 const LEVELS: usize = 8;
 /// Size of one level as a part of that of the level above.
@@ -129,6 +139,9 @@ impl Weights {
             magnitude: vec![options.floor; n],
             relations: vec![Relation::default(); n],
             most: vec![f64::INFINITY; n],
+            origin: vec![0.0; n],
+            from_beginning: vec![false; n],
+            coarse: false,
             largest: Vec::new(),
             courses: vec![Course::default(); n],
             seen: f64::INFINITY,
@@ -142,6 +155,8 @@ impl Weights {
         for (most, r) in self.most.iter_mut().zip(&self.relations) {
             *most = r.most;
         }
+        let from = self.from_beginning.iter_mut().zip(&self.relations);
+        from.for_each(|(from, r)| *from = r.from_beginning);
         let groups = self.relations.iter().filter_map(|r| r.group);
         self.largest = vec![0.0; groups.max().map_or(0, |g| usize::from(g) + 1)];
     }
@@ -163,12 +178,20 @@ impl Weights {
 
     /// Raises the magnitudes to those of the solution `y` at `t`, and forgets transients.
     pub fn see(&mut self, t: f64, y: &[f64]) {
+        if self.seen == f64::INFINITY {
+            let origins = self.origin.iter_mut().zip(y).zip(&self.from_beginning);
+            origins.for_each(|((origin, y), from)| *origin = if *from { *y } else { 0.0 });
+        }
         let dt = (t - self.seen).max(0.0);
         self.seen = t;
-        let floors = self.typical.iter().map(|typical| typical * self.floor);
+        self.coarse = false;
         let all = self.magnitude.iter_mut().zip(y).zip(&mut self.courses);
-        for (((m, y), course), floor) in all.zip(floors) {
-            *m = course.see(y.abs(), *m, (t, dt)).max(floor);
+        let places = self.typical.iter().zip(&self.origin);
+        for (((m, y), course), (typical, origin)) in all.zip(places) {
+            let way = course.see((y - origin).abs(), *m, (t, dt));
+            let rounded = ROUNDINGS * f64::EPSILON / self.tolerance * origin.abs();
+            *m = way.max(typical * self.floor).max(rounded);
+            self.coarse |= rounded > typical.max(way);
         }
         if self.largest.is_empty() {
             return;
@@ -210,6 +233,11 @@ impl Weights {
         &self.most
     }
 
+    /// Returns the values from which sizes are measured   (n)
+    pub fn origin(&self) -> &[f64] {
+        &self.origin
+    }
+
     /// Returns E, raised to what double precision can control.
     pub fn tolerance(&self) -> f64 {
         self.tolerance
@@ -217,7 +245,7 @@ impl Weights {
 
     /// Returns whether a smaller error was asked for than double precision can control.
     pub fn is_raised(&self) -> bool {
-        self.raised
+        self.raised || self.coarse
     }
 
     /// Returns `‖e‖` of a step that ends at `y`.
@@ -227,11 +255,11 @@ impl Weights {
 
     /// Iterates over `eᵢ / Mᵢ` of a step that ends at `y`.
     pub fn relative<'a>(&'a self, e: &'a [f64], y: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        let magnitudes = self.magnitude.iter().zip(&self.most);
+        let magnitudes = self.magnitude.iter().zip(&self.most).zip(&self.origin);
         e.iter()
             .zip(y)
             .zip(magnitudes)
-            .map(|((e, y), (m, most))| e / y.abs().min(*most).max(*m))
+            .map(|((e, y), ((m, most), origin))| e / (y - origin).abs().min(*most).max(*m))
     }
 }
 
@@ -443,7 +471,8 @@ impl Starter<'_> {
             return h.min(self.options.h_max);
         }
         let typical = self.weights.typical();
-        let scale = |i: usize| y[i].abs().max(typical[i]);
+        let origin = self.weights.origin();
+        let scale = |i: usize| (y[i] - origin[i]).abs().max(typical[i]);
         let speed = worst((0..y.len()).map(|i| f[i] / scale(i)));
         let mut probe = if speed > 1e-8 {
             0.01 / speed

@@ -31,6 +31,8 @@ const SLOWEST_RATE: f64 = 0.9;
 /// Power of ρ/(1−ρ) from step to step: the rate measured with a kept matrix is trusted less and
 /// less.
 const RATE_AGEING: f64 = 0.7;
+/// Size of a correction that is rounding, relative to the magnitudes of the unknowns.
+pub(super) const ROUNDING: f64 = 1e-13;
 /// Accuracy asked of uncontrolled algebraic unknowns, relative to their magnitude.
 const UNCONTROLLED_TOLERANCE: f64 = 1e-3;
 /// Weight in the norm of unknowns whose rate occurs, but whose error is not controlled.
@@ -77,6 +79,8 @@ pub struct Iterate {
     pub scale: Vec<f64>,
     /// whether that error was raised above rounding: corrections no larger need not fall
     pub is_eased: bool,
+    /// size of a correction that is rounding, as a part of that error
+    pub rounding: f64,
     /// predicted solution and rate, kept for a second iteration   (n each)
     predicted: [Vec<f64>; 2],
 }
@@ -91,6 +95,7 @@ impl Iterate {
             e: zeros(),
             scale: zeros(),
             is_eased: false,
+            rounding: 0.0,
             predicted: [zeros(), zeros()],
         }
     }
@@ -250,7 +255,7 @@ impl Corrector {
         }
         at.keep_prediction();
         loop {
-            match self.iterate(problem, (t, cj), at, stats) {
+            match self.iterate(problem, (t, cj, fresh), at, stats) {
                 Ok(()) => return Ok(()),
                 Err(trouble) if fresh || !trouble.recoverable => {
                     // a permitted error that was raised above rounding
@@ -272,11 +277,12 @@ impl Corrector {
         }
     }
 
-    /// Repeats (2) until the error left is small.
+    /// Repeats (2) until the error left is small; a matrix that is not `fresh` must be seen to
+    /// make corrections smaller.
     fn iterate<P: Dae + ?Sized>(
         &mut self,
         problem: &mut P,
-        (t, cj): (f64, f64),
+        (t, cj, fresh): (f64, f64, bool),
         at: &mut Iterate,
         stats: &mut Stats,
     ) -> Result<(), Trouble> {
@@ -313,7 +319,7 @@ impl Corrector {
             let mut factor = self.rate_factor;
             if iteration == 0 {
                 first = size;
-                if size <= 1e-4 * PERMITTED_REST {
+                if size <= at.rounding || fresh && size <= 1e-4 * PERMITTED_REST {
                     return Ok(());
                 }
                 // a Newton iteration converges quadratically: a correction larger than the measured
@@ -323,14 +329,14 @@ impl Corrector {
                 factor = factor.max((1.0 - damping).abs());
             } else {
                 let rate = (size / first).powf(1.0 / iteration as f64);
-                if rate > SLOWEST_RATE {
+                if rate > SLOWEST_RATE && size > at.rounding {
                     stagnant = Some(size);
                     break;
                 }
                 factor = rate / (1.0 - rate);
                 (self.rate_factor, self.measured) = (factor, first);
             }
-            if factor * size <= PERMITTED_REST {
+            if factor * size <= PERMITTED_REST && (fresh || iteration > 0) {
                 return Ok(());
             }
         }

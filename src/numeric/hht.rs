@@ -31,7 +31,7 @@
 use super::control::{
     self, Attempts, Permitted, Pi, Rejection, Stagnation, Weights, worst, worst_index,
 };
-use super::corrector::{Corrector, Iterate};
+use super::corrector::{self, Corrector, Iterate};
 use super::{Dae, Failure, Kind, Method, Options, Reason, Stats, Step, Stop};
 
 /// Order of the method.
@@ -179,9 +179,10 @@ impl Hht {
         now.ydot_before.copy_from_slice(&now.ydot);
         // the first step is of order 1, since a is taken for the rate
         let typical = self.weights.typical();
-        let speed = worst(
-            (0..y.len()).map(|i| self.controlled[i] * now.ydot[i] / now.y[i].abs().max(typical[i])),
-        );
+        let speed = worst((0..y.len()).map(|i| {
+            let way = now.y[i] - self.weights.origin()[i];
+            self.controlled[i] * now.ydot[i] / way.abs().max(typical[i])
+        }));
         let guess = self.permitted.now().sqrt() * if speed > 1e-8 { 0.1 / speed } else { 1e-3 };
         (now.t, now.h_used) = (t, 0.0);
         now.h = self
@@ -218,6 +219,7 @@ impl Hht {
         let cj = (1.0 - am) / ((1.0 - af) * gamma * h);
         let tolerance = self.permitted.now();
         self.next.is_eased = self.permitted.is_raised();
+        self.next.rounding = corrector::ROUNDING / tolerance;
         for i in 0..self.next.y.len() {
             let a = now.ydot[i] + (now.a[i] - now.ydot[i]) * moved;
             let rise = self.differential[i]
@@ -225,7 +227,8 @@ impl Hht {
             self.next.y[i] = now.y[i] + rise;
             self.next.ydot[i] =
                 cj * (rise - h * (1.0 - gamma) * a) + (am * a - af * now.ydot[i]) / (1.0 - af);
-            let (m, y) = (self.weights.magnitude()[i], self.next.y[i].abs());
+            let way = self.next.y[i] - self.weights.origin()[i];
+            let (m, y) = (self.weights.magnitude()[i], way.abs());
             self.next.scale[i] = 1.0 / (tolerance * if y > m { y } else { m });
         }
         self.corrector

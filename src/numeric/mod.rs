@@ -190,6 +190,9 @@ pub struct Relation {
     /// the unknown whose rate it is, if its error may be judged by the change it makes to that one
     /// within a step
     pub rate_of: Option<usize>,
+    /// whether its magnitude is that of its way from where it began: a coordinate that a choice of
+    /// origin makes large
+    pub from_beginning: bool,
 }
 
 impl Default for Relation {
@@ -199,6 +202,7 @@ impl Default for Relation {
             group: None,
             share: 0.0,
             rate_of: None,
+            from_beginning: false,
         }
     }
 }

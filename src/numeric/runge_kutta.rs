@@ -317,6 +317,7 @@ impl Dop853 {
         let (k9, k10, k11, k12) = (&k9[..n], &k10[..n], &k11[..n], &k12[..n]);
         let most = &self.weights.most()[..n];
         let magnitude = &self.weights.magnitude()[..n];
+        let origin = &self.weights.origin()[..n];
         let y1 = &mut self.y1[..n];
         let (mut worst5, mut worst3, mut sum) = (0.0, 0.0, 0.0);
         for i in 0..n {
@@ -334,7 +335,7 @@ impl Dop853 {
                 - 0.7338466882816118 * k9[i]
                 - 0.022058823529411766 * k12[i];
             y1[i] = y[i] + h * slope;
-            let size = y1[i].abs();
+            let size = (y1[i] - origin[i]).abs();
             let size = if size < most[i] { size } else { most[i] };
             let w = h / if size > magnitude[i] {
                 size
@@ -408,9 +409,12 @@ impl Dop853 {
             return f64::INFINITY;
         }
         let (magnitude, most) = (self.weights.magnitude(), self.weights.most());
+        let origin = self.weights.origin();
         let size = |e: &[f64]| {
-            let relative =
-                |(i, e): (usize, &f64)| (e / y1[i].abs().min(most[i]).max(magnitude[i])).abs();
+            let relative = |(i, e): (usize, &f64)| {
+                let size = (y1[i] - origin[i]).abs().min(most[i]);
+                (e / size.max(magnitude[i])).abs()
+            };
             worst(e.iter().enumerate().map(relative))
         };
         blended(size(e5), size(e3))

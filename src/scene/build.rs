@@ -52,6 +52,9 @@ pub struct Options {
     pub shells: Arc<BTreeMap<u32, Result<Shell, String>>>,
 }
 
+/// Part of the distance from the origin below which an extent is rounding.
+const EXTENT_OF_ROUNDING: f64 = 1e-13;
+
 impl Scene {
     /// Makes the scene of a model; it is shared and never changes.
     ///
@@ -272,6 +275,40 @@ impl<'m> Builder<'m> {
             .filter(|x| x.is_finite())
             .fold(0.0, f64::max);
         s.length = if length > 0.0 { length } else { 1.0 };
+        let extent = self.extent();
+        let s = &mut self.scene;
+        s.extent = if extent > 0.0 {
+            extent.min(s.length)
+        } else {
+            s.length
+        };
+    }
+
+    /// Returns the diagonal of what moves, as the dataset places it, or the largest radius of
+    /// gyration if that is more: moving the whole model does not change it.
+    fn extent(&self) -> f64 {
+        let s = &self.scene;
+        let points = s.markers.iter().filter_map(|m| {
+            let part = &s.parts[m.part?];
+            let in_part = part.frame.inverse().point(m.frame.position);
+            Some(part.initial.point(in_part))
+        });
+        let points = points.filter(|p| p.norm().is_finite());
+        let points: Vec<Vec3<f64>> = points.collect();
+        let span = |k: usize| {
+            let along = points.iter().map(|p| p.0[k]);
+            let low = along.clone().fold(f64::INFINITY, f64::min);
+            (along.fold(f64::NEG_INFINITY, f64::max) - low).max(0.0)
+        };
+        let diagonal = Vec3(std::array::from_fn(span)).norm();
+        // the rounding of places far away is no extent
+        let noise = EXTENT_OF_ROUNDING * s.length;
+        let gyration = self.model.parts.values().map(|part| {
+            let largest = part.ip[..3].iter().fold(0.0_f64, |m, i| m.max(*i));
+            (largest / part.mass).sqrt()
+        });
+        let gyration = gyration.filter(|r| r.is_finite()).fold(0.0, f64::max);
+        (if diagonal > noise { diagonal } else { 0.0 }).max(gyration)
     }
 
     /// Unknowns that functions define through each other.

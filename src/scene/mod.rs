@@ -456,6 +456,8 @@ pub struct Scene {
     pub warnings: Vec<crate::diagnostic::Diagnostic>,
     /// a typical length of the mechanism, for tolerances and scales
     pub length: f64,
+    /// a typical length of its motion: the extent of what moves, however far away the whole stands
+    pub(crate) extent: f64,
     /// distance over which constraints are spread: an arm for comparing torques with forces
     pub span: f64,
     /// misalignment up to which rows that depend on others are left out: IC/ERROR, in rad, and as

@@ -356,11 +356,10 @@ fn oscillator_run(name: &str, max_order: usize, tolerance: f64) -> (f64, f64, us
             assert!((ydot[0] - y[1]).abs() < 0.3 * tolerance.sqrt());
         }
     }
-    (
-        (method.y()[0] - f64::sin(10.0)).abs(),
-        inside,
-        method.stats().steps,
-    )
+    // of both unknowns: one of them may pass through zero there
+    let end = [f64::sin(10.0), f64::cos(10.0)];
+    let off = [0, 1].map(|k| method.y()[k] - end[k]);
+    (off[0].hypot(off[1]), inside, method.stats().steps)
 }
 
 #[test]

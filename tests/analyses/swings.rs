@@ -121,6 +121,65 @@ fn swings_of_van_der_pol_that_are_no_longer_in_phase_say_so() {
     assert!(found[0] > 10 && found[1] > 2, "{found:?}");
 }
 
+/// Masses that a belt takes along until a spring tears them off, by laws of friction far steeper
+/// than the speed of the belt: implicit methods took the steep slope of sticking for that of what
+/// slips already, and broke away late without a word.
+#[test]
+fn masses_on_belts_break_away_in_time_or_say_that_they_may_not() {
+    let belts: [(&str, f64); 4] = [
+        (
+            "-134.93*DX(2,1)-165.02*MAX(-1,MIN(1,(VX(2,1)-1.1321)/2.485e-05))\
+             *(1-0.3627*STEP(ABS(VX(2,1)-1.1321),2.485e-05,0,0.2435,1))",
+            16.0,
+        ),
+        (
+            "-186.35*DX(2,1)-0.273*VX(2,1)-119.57*TANH((VX(2,1)-0.64992)/0.000101)\
+             *(1-0.4214*STEP(ABS(VX(2,1)-0.64992),0.000101,0,0.3204,1))",
+            7.0,
+        ),
+        (
+            "-57.91*DX(2,1)-0.1522*VX(2,1)-57.978*STEP((VX(2,1)-0.54306),-3.431e-05,-1,3.431e-05,1)\
+             *(0.3128+0.6872*EXP(-ABS(VX(2,1)-0.54306)/0.5782))",
+            50.0,
+        ),
+        // a clock: what drives it jumps as the pendulum turns back
+        ("-25*DX(2,1)-0.5*VX(2,1)+0.5*TANH(VX(2,1)/0.001)", 60.0),
+    ];
+    let mut found = [0, 0];
+    for (force, end) in belts {
+        let text = oscillator("").replace("MASS=2", "MASS=1");
+        let text = text.replace("QG=0.5,0,0", "QG=0.05,0,0");
+        let text = text.replace("-50*DX(2,1)", force);
+        let place = |method: &str, error: f64| {
+            let mut s = session_by(&text, &["DX(2,1)"], method, error);
+            let status = try_to(&mut s, Analysis::Dynamic, end, 1000);
+            let told = is_told(&s);
+            (running::values(&s, "DX(2,1)").to_vec(), told, status)
+        };
+        let (exact, ..) = place("AUTO", 1e-10);
+        let widest = exact.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        for method in METHODS {
+            for exponent in [2, 3, 4, 5] {
+                let request = 10f64.powi(-exponent);
+                let (found_at, told, status) = place(method, request);
+                if status != Status::Completed {
+                    continue;
+                }
+                let pairs = found_at.iter().zip(&exact).rev().take(100);
+                let lost = pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs())) / widest;
+                println!("{method} {request:e} {end}: {lost:.1e} {told}");
+                let permitted = (400.0 * request).min(0.8);
+                assert!(
+                    told || lost < permitted,
+                    "{method} {request:e} {force}: {lost}"
+                );
+                found[usize::from(told)] += 1;
+            }
+        }
+    }
+    assert!(found[0] > 30 && found[1] > 10, "{found:?}");
+}
+
 #[test]
 fn outputs_change_nothing_about_it() {
     for steps in [1, 50, 700] {

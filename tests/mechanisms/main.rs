@@ -24,6 +24,7 @@ mod massless;
 mod mechanisms;
 mod misaligned;
 mod ranks;
+mod rows_of_loops;
 mod scene;
 mod singular_passages;
 mod turns;

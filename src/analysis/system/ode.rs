@@ -294,8 +294,8 @@ impl Ode for System {
                 && !c.angular
                 && !f.in_ball
             {
-                typical.q[q] = self.scene.length;
-                typical.v[v] = self.scene.length;
+                typical.q[q] = self.scene.extent;
+                typical.v[v] = self.scene.extent;
             }
         }
     }
@@ -317,6 +317,7 @@ impl Ode for System {
                     group: Some(kind),
                     share: SHARE_OF_LARGEST_POSITION,
                     rate_of: None,
+                    from_beginning: !c.angular,
                 };
             }
             // short steps because of a contact have to be seen in velocity

@@ -13,6 +13,12 @@
 //! next correction is predicted to be small against the permitted error, and is given up as soon
 //! as Θ predicts that the permitted number of corrections will not suffice.
 //!
+//! *Hidden residuals*: where J is stiff, corrections are small however large the residual is. (A
+//! mass that a steep friction held: J is that of sticking, and the spring pulls already more than
+//! the friction can. The residual is the missing acceleration, and corrections are 10⁻⁶ of it.) So
+//! a residual that would be too large without J must be seen to fall in each of its unknowns; where
+//! it does not, J is that of another place.
+//!
 //! Source: Hairer & Wanner, Solving ODEs II, IV.8.
 
 use super::Systems;
@@ -54,6 +60,14 @@ pub(super) const KEEP_JACOBIAN_RATE: f64 = 0.02;
 /// Θ from which the iteration counts as divergent.
 const DIVERGENT_RATE: f64 = 0.99;
 
+/// Ratio of two successive residuals of an unknown above which J does not explain them.
+pub(super) const UNEXPLAINED: f64 = 0.9;
+/// Ratio of a residual without J to its correction above which J hides it: what a smaller one hides
+/// of an iteration that has converged is no more than the permitted error.
+const HIDING: f64 = 30.0;
+/// Size of a correction that may be rounding, relative to the magnitude of its unknown.
+pub(super) const ROUNDING: f64 = 1e-13;
+
 /// Values and slopes at `theta` of the cubics that are one at a node, and zero at the others and at
 /// the beginning of the step.
 pub(super) const fn cubic_weights(theta: f64) -> [[f64; 2]; 3] {
@@ -87,6 +101,18 @@ pub(super) struct Stages {
     pub g: [Vec<f64>; 3],
     /// argument of a rate   (n)
     pub argument: Vec<f64>,
+    /// sizes of the first residual, and of the last   (n)
+    residual: [Vec<f64>; 2],
+}
+
+/// A correction of the stages, against the permitted errors.
+struct Correction {
+    /// the size of the largest
+    size: f64,
+    /// whether J makes an unknown's correction small whose residual is not
+    is_hidden: bool,
+    /// whether such a residual has not become smaller
+    is_unexplained: bool,
 }
 
 /// Convergence of the iteration: its limits, and the rate measured last.
@@ -144,6 +170,7 @@ impl Stages {
             w: three(),
             g: three(),
             argument: vec![0.0; n],
+            residual: std::array::from_fn(|_| vec![0.0; n]),
         }
     }
 
@@ -192,24 +219,35 @@ impl Stages {
         let ([g1, g2, g3], [w1, w2, w3]) = (&mut self.g, &self.w);
         let (g1, g2, g3) = (&mut g1[..n], &mut g2[..n], &mut g3[..n]);
         let (w1, w2, w3) = (&w1[..n], &w2[..n], &w3[..n]);
+        let last = &mut self.residual[1][..n];
         for i in 0..n {
             let (f1, f2, f3) = (g1[i], g2[i], g3[i]);
             g1[i] = TI[0][0] * f1 + TI[0][1] * f2 + TI[0][2] * f3 - gamma * w1[i];
             g2[i] = TI[1][0] * f1 + TI[1][1] * f2 + TI[1][2] * f3 - alpha * w2[i] + beta * w3[i];
             g3[i] = TI[2][0] * f1 + TI[2][1] * f2 + TI[2][2] * f3 - alpha * w3[i] - beta * w2[i];
+            last[i] = g1[i].abs() + g2[i].abs() + g3[i].abs();
         }
     }
 
-    /// Adds the corrections in `g` to the stages; returns the size of the largest, scaled.
-    fn correct(&mut self, scale: &[f64]) -> Result<f64, Newton> {
+    /// Keeps the sizes of the residual as those of the first.
+    fn keep_residual(&mut self) {
+        let [first, last] = &mut self.residual;
+        first.copy_from_slice(last);
+    }
+
+    /// Adds the corrections in `g` to the stages; `h`: length of the step, in s; `rounding`: size
+    /// of a correction that may be rounding, scaled.
+    fn correct(&mut self, scale: &[f64], (h, rounding): (f64, f64)) -> Result<Correction, Newton> {
         let n = self.argument.len();
         let [g1, g2, g3] = &self.g;
         let ([w1, w2, w3], [z1, z2, z3]) = (&mut self.w, &mut self.z);
         let (g1, g2, g3) = (&g1[..n], &g2[..n], &g3[..n]);
         let (w1, w2, w3) = (&mut w1[..n], &mut w2[..n], &mut w3[..n]);
         let (z1, z2, z3) = (&mut z1[..n], &mut z2[..n], &mut z3[..n]);
-        let scale = &scale[..n];
+        let [first, last] = &self.residual;
+        let (scale, first, last) = (&scale[..n], &first[..n], &last[..n]);
         let (mut size, mut sum) = (0.0, 0.0);
+        let (mut is_hidden, mut is_unexplained) = (false, false);
         for i in 0..n {
             w1[i] += g1[i];
             w2[i] += g2[i];
@@ -220,9 +258,17 @@ impl Stages {
             let change = (g1[i].abs() + g2[i].abs() + g3[i].abs()) * scale[i];
             sum += change;
             size = if change > size { change } else { size };
+            let unfiltered = h / GAMMA * last[i] * scale[i];
+            let hides = unfiltered > 1.0_f64.max(HIDING * change) && change > rounding;
+            is_hidden |= hides;
+            is_unexplained |= hides && last[i] > UNEXPLAINED * first[i];
         }
         if f64::is_finite(sum) {
-            Ok(size)
+            Ok(Correction {
+                size,
+                is_hidden,
+                is_unexplained,
+            })
         } else {
             let index = g1.iter().position(|x| !x.is_finite());
             Err(Newton::NotFinite(index.unwrap_or(0)))
@@ -280,11 +326,12 @@ impl Convergence {
 
 /// Solves (1) by (2), from the guess in `stages`; `systems` hold the factors for this step.
 ///
-/// `scale`: 1/(permitted error) of each unknown   (n)
+/// `scale`: 1/(permitted error) of each unknown   (n); `rounding`: size of a correction that may be
+/// rounding, scaled; infinite where residuals are rounding themselves.
 pub(super) fn solve_collocation_system<P: Ode + ?Sized>(
     problem: &mut P,
     begin: Begin,
-    scale: &[f64],
+    (scale, rounding): (&[f64], f64),
     stages: &mut Stages,
     systems: &mut Systems,
     convergence: &mut Convergence,
@@ -301,16 +348,24 @@ pub(super) fn solve_collocation_system<P: Ode + ?Sized>(
             return end;
         }
         stages.transform_residual(begin.h);
+        if iteration == 0 {
+            stages.keep_residual();
+        }
         let [g1, g2, g3] = &mut stages.g;
         systems.solve(g1);
         systems.solve_complex(g2, g3);
         stats.newton_iterations += 1;
-        let size = match stages.correct(scale) {
-            Ok(size) => size,
+        let correction = match stages.correct(scale, (begin.h, rounding)) {
+            Ok(correction) => correction,
             Err(end) => return end,
         };
-        if let Some(end) = convergence.judge(&mut progress, iteration, size) {
-            return end;
+        match convergence.judge(&mut progress, iteration, correction.size) {
+            Some(Newton::Converged(1)) if correction.is_hidden => (),
+            Some(Newton::Converged(2..)) if correction.is_unexplained => {
+                return Newton::Slow(0.5);
+            }
+            Some(end) => return end,
+            None => (),
         }
     }
     Newton::Slow(0.5)

@@ -16,6 +16,10 @@
 //! e = (γ̂/h − J)⁻¹ (f(t + θ h, p(θ)) − p′(θ)/h)          θ = 0.85, where the cubic is worst    (4)
 //! ```
 //!
+//! The filter is right only where the rate is about as steep as J says. So where (4) without it
+//! would have rejected the step, the rate is evaluated again at p(θ) + e: what the filter takes
+//! away must have fallen. Else it is the error itself (`estimate.rs`).
+//!
 //! *Newton*: simplified, started from the polynomial of the step before. The Jacobian is kept while
 //! the iteration converges with Θ ≤ 0.02, its factors also while the step would grow by less than
 //! a fifth.
@@ -36,6 +40,7 @@
 #![allow(clippy::needless_range_loop)] // many arrays at one index read best that way
 
 mod collocation;
+mod estimate;
 mod full;
 mod systems;
 
@@ -43,21 +48,13 @@ use super::control::{self, Attempts, Rejection, Weights, worst, worst_index};
 use super::quadrature::{Node, RADAU_3, over_interpolant};
 use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
 use collocation::{
-    ALPHA, BETA, Begin, Convergence, GAMMA, KEEP_JACOBIAN_RATE, Newton, Polynomial, SQRT6, Stages,
+    ALPHA, BETA, Begin, Convergence, GAMMA, KEEP_JACOBIAN_RATE, Newton, Polynomial, Stages,
     solve_collocation_system,
 };
 use systems::Systems;
 
 /// Order of the method.
 const ORDER: usize = 5;
-/// eᵢ of (3).
-const E: [f64; 3] = [
-    -(13.0 + 7.0 * SQRT6) / 3.0,
-    (-13.0 + 7.0 * SQRT6) / 3.0,
-    -1.0 / 3.0,
-];
-/// θ of (4).
-const BETWEEN_NODES: f64 = 0.85;
 /// Permitted value of the error estimate of a step that has not converged where rates are noisy: a
 /// request of 1e-7.
 const NOISY_TOLERANCE: f64 = 1.3e-7;
@@ -136,6 +133,10 @@ pub struct Radau {
     advanced: bool,
     /// changes of the length of the present step
     placing: Placing,
+    /// attempts at the present step whose residuals no Jacobian explained
+    hidden: usize,
+    /// f − p′ of (4)   (n)
+    unexplained: Vec<f64>,
     /// the present step need not be better than noise
     eased: bool,
     /// length of the next step
@@ -222,6 +223,8 @@ impl Radau {
             end: point(),
             advanced: false,
             placing: Placing::default(),
+            hidden: 0,
+            unexplained: zeros(),
             eased: false,
             control: StepControl::new(),
             scale: zeros(),
@@ -333,73 +336,6 @@ impl Radau {
         }
     }
 
-    /// Estimates the error of the step, (3) or (4), as a part of that permitted.
-    fn estimate<P: Ode + ?Sized>(&mut self, problem: &mut P, h: f64) -> Result<f64, Failure> {
-        let (error, unfiltered) = self.estimate_at_end(problem, h)?;
-        if error >= 1.0 || unfiltered < 1.0 || error.is_nan() {
-            return Ok(error);
-        }
-        Ok(error.max(self.estimate_between_nodes(problem, h)?))
-    }
-
-    /// Estimates the error (4), as a part of that permitted.
-    fn estimate_between_nodes<P: Ode + ?Sized>(
-        &mut self,
-        problem: &mut P,
-        h: f64,
-    ) -> Result<f64, Failure> {
-        const WEIGHTS: [[f64; 2]; 3] = collocation::cubic_weights(BETWEEN_NODES);
-        let z = &self.stages.z;
-        let argument = &mut self.stages.argument;
-        for i in 0..argument.len() {
-            let sum = |k: usize| (0..3).map(|j| WEIGHTS[j][k] * z[j][i]).sum::<f64>();
-            argument[i] = self.begin.y[i] + sum(0);
-            self.defect[i] = sum(1) / h;
-        }
-        self.stats.evaluations += 1;
-        problem.rate(self.begin.t + BETWEEN_NODES * h, argument, &mut self.error)?;
-        for (e, slope) in self.error.iter_mut().zip(&self.defect) {
-            *e -= slope;
-        }
-        self.systems.solve(&mut self.error);
-        Ok(worst(
-            self.error.iter().zip(&self.scale).map(|(e, s)| e * s),
-        ))
-    }
-
-    /// Estimates the error (3) of the step, as a part of that permitted; the second number is the
-    /// same without its filter.
-    fn estimate_at_end<P: Ode + ?Sized>(
-        &mut self,
-        problem: &mut P,
-        h: f64,
-    ) -> Result<(f64, f64), Failure> {
-        let n = self.begin.y.len();
-        let z = &self.stages.z;
-        for i in 0..n {
-            self.defect[i] = (E[0] * z[0][i] + E[1] * z[1][i] + E[2] * z[2][i]) / h;
-            self.error[i] = self.defect[i] + self.begin.f[i];
-        }
-        let norm = |e: &[f64], scale: &[f64]| worst(e.iter().zip(scale).map(|(e, s)| e * s));
-        let unfiltered = h / GAMMA * norm(&self.error, &self.scale);
-        self.systems.solve(&mut self.error);
-        let mut error = norm(&self.error, &self.scale);
-        if error >= 1.0 && (self.control.first || self.control.calm) {
-            let argument = &mut self.stages.argument;
-            for i in 0..n {
-                argument[i] = self.begin.y[i] + self.error[i];
-            }
-            self.stats.evaluations += 1;
-            problem.rate(self.begin.t, argument, &mut self.error)?;
-            for i in 0..n {
-                self.error[i] += self.defect[i];
-            }
-            self.systems.solve(&mut self.error);
-            error = norm(&self.error, &self.scale);
-        }
-        Ok((error.max(1e-10), unfiltered))
-    }
-
     /// Computes the new point (2), its rate, and the polynomial of the step.
     fn finish<P: Ode + ?Sized>(
         &mut self,
@@ -496,10 +432,11 @@ impl Radau {
             y: &self.begin.y,
             h,
         };
+        let rounding = self.rounding(problem);
         let end = solve_collocation_system(
             problem,
             begin,
-            &self.scale,
+            (&self.scale, rounding),
             &mut self.stages,
             &mut self.systems,
             &mut self.convergence,
@@ -508,6 +445,7 @@ impl Radau {
         match end {
             Newton::Converged(iterations) => Ok(iterations),
             Newton::Slow(factor) => {
+                self.hidden += usize::from(self.freshness.here);
                 let g = self.stages.g[0].iter().zip(&self.scale);
                 Err(Rejection {
                     reason: Reason::Newton(worst_index(g.map(|(g, s)| g * s))),
@@ -616,6 +554,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
         let mut attempts = Attempts::new(self.begin.t, t_limit, &self.options);
         self.control.calm = false;
         (self.placing, self.eased) = (Placing::default(), false);
+        self.hidden = 0;
         loop {
             let proposed = self.control.h_next.min(self.options.h_max);
             let too_fast = || control::too_fast(&self.begin.f, &self.weights);
