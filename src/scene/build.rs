@@ -54,6 +54,9 @@ pub struct Options {
 
 /// Part of the distance from the origin below which an extent is rounding.
 const EXTENT_OF_ROUNDING: f64 = 1e-13;
+/// Extents that make a typical length of a motion, where the origin is not nearer than that: a body
+/// may be small beside its way.
+const TYPICAL_EXTENTS: f64 = 100.0;
 
 impl Scene {
     /// Makes the scene of a model; it is shared and never changes.
@@ -278,7 +281,7 @@ impl<'m> Builder<'m> {
         let extent = self.extent();
         let s = &mut self.scene;
         s.extent = if extent > 0.0 {
-            extent.min(s.length)
+            (TYPICAL_EXTENTS * extent).min(s.length)
         } else {
             s.length
         };

@@ -456,7 +456,8 @@ pub struct Scene {
     pub warnings: Vec<crate::diagnostic::Diagnostic>,
     /// a typical length of the mechanism, for tolerances and scales
     pub length: f64,
-    /// a typical length of its motion: the extent of what moves, however far away the whole stands
+    /// a typical length of its motion, however far away the whole stands: `length`, or extents of
+    /// what moves
     pub(crate) extent: f64,
     /// distance over which constraints are spread: an arm for comparing torques with forces
     pub span: f64,
