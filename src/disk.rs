@@ -5,9 +5,11 @@
 //! becomes the message that a file cannot be opened or written: models, commands and results in
 //! memory need none of it.
 
+#[cfg(feature = "setup")]
+pub(crate) use std::fs::read_to_string;
 pub(crate) use std::fs::{
-    File, Metadata, OpenOptions, create_dir_all, metadata, read, read_dir, read_to_string,
-    remove_dir_all, remove_file, rename,
+    File, Metadata, OpenOptions, create_dir_all, metadata, read, read_dir, remove_dir_all,
+    remove_file, rename,
 };
 #[cfg(feature = "parquet")]
 pub(crate) use std::fs::{create_dir, remove_dir, write};

@@ -252,11 +252,12 @@ impl Growing {
         if !is_full && !is_due {
             return Ok(());
         }
+        // before any row is on the disk: tables write large blocks as soon as they are full
+        if !std::mem::replace(&mut self.is_claimed, true) {
+            self.folder.claim(&[])?;
+        }
         self.take(run)?;
         if is_due {
-            if !std::mem::replace(&mut self.is_claimed, true) {
-                self.folder.claim(&[])?;
-            }
             for table in &mut self.tables {
                 table.sink.flush(run)?;
             }

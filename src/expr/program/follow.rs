@@ -239,12 +239,14 @@ impl Builder {
     }
 
     /// Returns whether nothing in some values depended on time alone at the same place of the tape.
+    #[cfg(feature = "solver")]
     pub(super) fn are_untimed_by_tape(&self, outputs: &[Value]) -> bool {
         let untimed = |made: &mut Made| matches!(made, Made::Untimed).then_some(());
         self.end_by_tape(outputs, untimed).is_some()
     }
 
     /// Keeps with the tape that nothing in some values depends on time alone.
+    #[cfg(feature = "solver")]
     pub(super) fn keep_untimed(&self, outputs: &[Value]) {
         self.keep_end(outputs, || Made::Untimed);
     }

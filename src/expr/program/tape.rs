@@ -43,6 +43,7 @@ pub(super) enum Made {
     /// the number of operations
     Count(usize),
     /// nothing in them depends on time alone
+    #[cfg(feature = "solver")]
     Untimed,
 }
 

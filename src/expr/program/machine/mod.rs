@@ -198,6 +198,7 @@ impl Machine {
     }
 
     /// Translates the steps at once where so many further runs take longer than that.
+    #[cfg(feature = "solver")]
     pub(super) fn expect_runs(&self, n_runs: usize) {
         let is_decided = self.made.is_decided.load(Ordering::Relaxed);
         if !is_decided && n_runs > runs_per_translation(self.steps()) * 3 / 2 {
