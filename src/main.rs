@@ -3,8 +3,6 @@
 #![cfg_attr(not(feature = "native"), forbid(unsafe_code))]
 
 fn main() -> std::process::ExitCode {
-    #[cfg(all(feature = "native", target_os = "linux", target_env = "gnu"))]
-    memory::take_large_pieces();
     cognate::cli::main()
 }
 
@@ -38,24 +36,6 @@ mod memory {
             // SAFETY: the caller keeps the conditions of `dealloc`.
             unsafe { System.dealloc(block, layout) }
         }
-    }
-
-    /// Lets the allocator ask the system for memory in large pieces. By itself it asks for a page
-    /// or a few at a time in threads, and one of these does all the work: a fiftieth of a run of a
-    /// small model. What is not used is not taken.
-    #[cfg(all(target_os = "linux", target_env = "gnu"))]
-    pub fn take_large_pieces() {
-        use std::ffi::c_int;
-        unsafe extern "C" {
-            safe fn mallopt(parameter: c_int, value: c_int) -> c_int;
-        }
-        // names of mallopt(3)
-        const TOP_PAD: c_int = -2;
-        const MMAP_THRESHOLD: c_int = -3;
-        // an allocator that does not know them stays as it is
-        mallopt(TOP_PAD, 8 << 20);
-        // larger blocks stay apart, as they do at first: tables of many rows grow faster so
-        mallopt(MMAP_THRESHOLD, 128 << 10);
     }
 
     #[inline]
