@@ -157,8 +157,9 @@ impl Weights {
         }
         let from = self.from_beginning.iter_mut().zip(&self.relations);
         from.for_each(|(from, r)| *from = r.from_beginning);
-        let groups = self.relations.iter().filter_map(|r| r.group);
-        self.largest = vec![0.0; groups.max().map_or(0, |g| usize::from(g) + 1)];
+        let numbers = self.relations.iter();
+        let n_groups = numbers.map(|r| r.group.map_or(0, |g| usize::from(g) + 1));
+        self.largest = vec![0.0; n_groups.max().unwrap_or(0)];
     }
 
     /// Forgets the magnitudes seen so far and asks for the typical ones through `fill`.
