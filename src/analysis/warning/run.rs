@@ -314,7 +314,7 @@ fn growth(factor: f64, fed: bool) -> String {
     let energy = format!("its energy is {factor:.1e} times that of the first quarter of the run");
     if fed {
         format!(
-            " feeds a motion that grows without bound: {energy}; is the sign of its damping right?"
+            " feeds a motion that grows without bound: {energy}; are the signs of its stiffness and its damping right?"
         )
     } else {
         format!("the motion grows without bound: {energy}")

@@ -207,7 +207,8 @@ reason: the end itself depends on the request. Ask for a smaller ERROR and see w
         summary: "the motion grows without bound",
         explanation: "\
 Its kinetic energy grows exponentially from quarter to quarter of the run, beyond all energy that there was. The named force does the
-most work in the end: a damper or a controller whose force has the direction of the velocity it reads. A run whose steps thereby get so
+most work in the end: a damper or a controller whose force has the direction of the velocity it reads, or a spring that
+pushes away from where it is at rest. A run whose steps thereby get so
 short that more than a million would be left is stopped; its results so far are kept.
 
     FUNCTION=0.5*VZ(20,11,11)            a damper pulls back: -0.5*VZ(20,11,11)",

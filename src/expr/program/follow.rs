@@ -269,23 +269,11 @@ impl Builder {
 
 #[cfg(test)]
 mod tests {
+    use super::super::random::Random;
     use super::*;
     use crate::expr::functions::Function;
     use crate::expr::program::structure::Structures;
     use crate::expr::program::{Comparison, Folding, UnaryOp};
-
-    /// Random numbers by a linear congruence.
-    struct Random(u64);
-
-    impl Random {
-        fn below(&mut self, n: usize) -> usize {
-            self.0 = self
-                .0
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 33) as usize % n
-        }
-    }
 
     /// Numbers that fold, that are equal, and that are not.
     const NUMBERS: [f64; 12] = [

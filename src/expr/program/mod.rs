@@ -40,6 +40,8 @@ mod order;
 mod parting;
 #[cfg(feature = "solver")]
 mod peaks;
+#[cfg(test)]
+mod random;
 mod record;
 mod reduction;
 mod replay;

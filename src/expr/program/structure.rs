@@ -206,22 +206,10 @@ fn hash(builder: &Builder, outputs: &[Value]) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::random::Random;
     use super::*;
     use crate::expr::functions::Function;
     use crate::expr::program::{BinaryOp, Comparison, Engine, UnaryOp, Work};
-
-    /// Random numbers by a linear congruence.
-    struct Random(u64);
-
-    impl Random {
-        fn below(&mut self, n: usize) -> usize {
-            self.0 = self
-                .0
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 33) as usize % n
-        }
-    }
 
     /// Records operations that `seed` says on two inputs and some constants.
     fn recorded(seed: u64, constants: &[f64]) -> (Builder, Vec<Value>) {
