@@ -281,26 +281,29 @@ fn is_integrated(system: &System) -> bool {
     l.n_x > 0 || !system.recorded.external.delays.is_empty() || !system.recorded.samples.is_empty()
 }
 
-/// Most changes of method that a record names.
-const MOST_CHANGES: usize = 4;
-
-/// Writes the methods that worked: "DOP853, then RADAU5 from 0.3, where …".
+/// Writes the methods that worked, the first change of method with its reason, and how often they
+/// changed after it: "DOP853, then RADAU5 from 0.3, where steps were limited by stiffness, then 16
+/// more changes until 2.7".
 fn methods(trajectory: &Trajectory) -> String {
-    let mut text = String::new();
-    for (t, name, why) in trajectory.methods.iter().take(1 + MOST_CHANGES) {
+    let Some(((_, first, _), changes)) = trajectory.methods.split_first() else {
+        return String::new();
+    };
+    let mut text = first.clone();
+    if let Some((t, name, why)) = changes.first() {
         let why = match why {
-            Takeover::Begins => {
-                text += name;
-                continue;
-            }
-            Takeover::Stiff => "steps were limited by stiffness",
-            Takeover::Eased => "branches changed",
-            Takeover::Slides => "the motion stays where a function changes its branch",
+            Takeover::Begins => "",
+            Takeover::Stiff => ", where steps were limited by stiffness",
+            Takeover::Eased => ", where branches changed",
+            Takeover::Slides => ", where the motion stays where a function changes its branch",
         };
-        text += &format!(", then {name} from {t}, where {why}");
+        text += &format!(", then {name} from {t}{why}");
     }
-    if let Some(more @ 1..) = trajectory.methods.len().checked_sub(1 + MOST_CHANGES) {
-        text += &format!(", then {more} more changes");
+    match changes {
+        [] | [_] => {}
+        [_, (t, name, _)] => text += &format!(", then {name} from {t}"),
+        [_, more @ .., (t, _, _)] => {
+            text += &format!(", then {} more changes until {t}", more.len() + 1);
+        }
     }
     text
 }
