@@ -13,6 +13,7 @@ use crate::expr::program::{Input, Program, Work};
 use crate::expr::signature::{Element, Kind};
 use crate::expr::{Expr, Profile, input_named, walk};
 use crate::scalar::{Jet, Scalar};
+use std::collections::BTreeSet;
 
 /// The settings for reading and evaluating expressions.
 #[derive(Clone, Debug, Default)]
@@ -176,7 +177,8 @@ impl Formula {
         match d.span.and_then(|span| self.expr.input_at(span)) {
             Some(input @ Input::Measure(measure, arguments)) => {
                 let row = measure.row();
-                let missing: Vec<String> = row
+                // a marker is named once, however often it is read
+                let missing: BTreeSet<_> = row
                     .arguments
                     .iter()
                     .zip(&arguments)
@@ -190,14 +192,19 @@ impl Formula {
                         ) && **id > 0
                             && !data.markers.contains_key(id)
                     })
-                    .map(|(_, id)| id.to_string())
+                    .map(|(_, id)| *id)
                     .collect();
+                let missing: Vec<String> = missing.iter().map(ToString::to_string).collect();
                 match row.family {
                     Family::Displacement | Family::Velocity | Family::Acceleration
                         if !missing.is_empty() =>
                     {
+                        let [s, state] = match missing.len() {
+                            1 => ["", "its state"],
+                            _ => ["s", "their states"],
+                        };
                         format!(
-                            "nothing is known of marker {}: give its state (`--markers FILE`; in the REPL `:marker {} X Y Z`)",
+                            "nothing is known of marker{s} {}: give {state} (`--markers FILE`; in the REPL `:marker {} X Y Z`)",
                             missing.join(" and "),
                             missing[0]
                         )

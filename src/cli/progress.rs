@@ -74,6 +74,9 @@ impl Progress {
     }
     /// Shows a part of the whole, where it is time for that.
     fn show(&self, at: f64, in_bar: impl Fn() -> String, in_line: impl Fn() -> String) {
+        if matches!(self.shown, Shown::Nowhere) {
+            return;
+        }
         let elapsed = self.begun.elapsed();
         if elapsed < self.next.get() {
             return;

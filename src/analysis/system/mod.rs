@@ -181,6 +181,16 @@ impl System {
         &self.recorded.rows.gradients
     }
 
+    /// Returns whether a projection onto the rows changes positions and velocities alone, and asks
+    /// nothing beside the programs: neither closures nor loops.
+    pub(in crate::analysis) fn projects_positions_alone(&self) -> bool {
+        let recorded = &self.recorded;
+        recorded.rows.projection.is_some()
+            && self.scene.cams.is_empty()
+            && recorded.loops.is_none()
+            && recorded.external.is_empty()
+    }
+
     /// Returns the scene in its present configuration.
     pub fn configured(&self) -> Configured<'_> {
         self.scene.within(&self.configuration)

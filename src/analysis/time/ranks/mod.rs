@@ -15,7 +15,7 @@ mod valley;
 
 pub use locked::{Lock, locked};
 pub use passes::{Pass, passes};
-use selection::{norm, select};
+use selection::{Rows, margin, norm, select};
 use sides::Loop;
 pub use sides::{Side, Sides};
 
@@ -94,14 +94,14 @@ impl Gradients {
     }
 
     /// Evaluates the rows, by loops.
-    fn at(&self, numbers: &[f64]) -> Vec<Vec<Vec<f64>>> {
+    fn at(&self, numbers: &[f64]) -> Vec<Rows> {
         let mut values = vec![0.0; self.places.len()];
         self.program
             .run(numbers, &mut self.work.borrow_mut(), &mut values);
-        let zeros = |l: &Loop| vec![vec![0.0; l.coordinates.len()]; l.rows.len()];
+        let zeros = |l: &Loop| Rows::zeros(l.rows.len(), l.coordinates.len());
         let mut all: Vec<_> = self.loops.iter().map(zeros).collect();
         for (&(k, i, j, factor), x) in self.places.iter().zip(values) {
-            all[k][i][j] += factor * x;
+            all[k].row_mut(i)[j] += factor * x;
         }
         all
     }
@@ -124,27 +124,21 @@ fn gradients(scene: Configured<'_>, numbers: &[f64]) -> Vec<Vec<f64>> {
     all
 }
 
-/// Returns the least that any row of a loop determines beyond the others: zero where they are
-/// dependent. `usual`: the length of each row elsewhere.
-fn margin(rows: Vec<Vec<f64>>, usual: impl Iterator<Item = f64>) -> f64 {
-    let n = rows.len();
-    let mut rows = rows;
-    for (row, usual) in rows.iter_mut().zip(usual) {
-        row.iter_mut().for_each(|x| *x /= usual);
-    }
-    let (chosen, least) = select(rows, |_| false, n);
-    if chosen.len() < n { 0.0 } else { least }
-}
-
 /// Returns the rows to keep from here on, when those kept so far have become dependent though the
 /// mechanism has not, or a row that was left out no longer follows from them; `None`: they may
 /// stay.
 pub fn better_rows(scene: Configured<'_>, numbers: &[f64]) -> Option<Vec<bool>> {
     let kept = active(scene);
     let all = gradients(scene, numbers);
-    let own = kept.iter().map(|&r| all[r].clone()).collect();
-    let (stay, least) = select(own, |_| true, kept.len());
-    let (better, most) = select(all, |r| kept.contains(&r), usize::MAX);
+    let rows_of = |chosen: &[usize]| {
+        let mut rows = Rows::zeros(chosen.len(), scene.layout.n_v);
+        let places = rows.iter_mut().zip(chosen);
+        places.for_each(|(row, &r)| row.copy_from_slice(&all[r]));
+        rows
+    };
+    let (stay, least) = select(rows_of(&kept), |_| true, kept.len());
+    let every: Vec<usize> = (0..all.len()).collect();
+    let (better, most) = select(rows_of(&every), |r| kept.contains(&r), usize::MAX);
     if better == kept || better.len() < kept.len() {
         return None;
     }

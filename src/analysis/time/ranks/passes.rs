@@ -6,6 +6,7 @@
 //! between two others is put onto the rows only where that may decide anything: what it would
 //! change is bounded by how far off it is.
 
+use super::sides::GAP;
 use super::valley::Valley;
 use super::{Gradients, active, gradients, margin, norm, place, weakest};
 use crate::analysis::start::assemble;
@@ -152,6 +153,8 @@ struct Search<'s> {
     /// values of all rows   (n_rows)
     values: &'s Program,
     work: RefCell<Work>,
+    /// recorded projections onto these rows, where there are any that change positions alone
+    projections: Option<RefCell<System>>,
 }
 
 impl<'s> Search<'s> {
@@ -161,8 +164,8 @@ impl<'s> Search<'s> {
         let mut usual = vec![0.0_f64; scene.rows.len()];
         for n in states.iter().flatten() {
             for (l, rows) in gradients.loops.iter().zip(gradients.at(n)) {
-                for (&r, row) in l.rows.iter().zip(rows) {
-                    usual[r] = usual[r].max(norm(&row));
+                for (&r, row) in l.rows.iter().zip(rows.iter()) {
+                    usual[r] = usual[r].max(norm(row));
                 }
             }
         }
@@ -176,6 +179,9 @@ impl<'s> Search<'s> {
             usual,
             values: system.row_values(),
             work: RefCell::default(),
+            projections: (scene.configuration.active == system.configuration.active
+                && system.projects_positions_alone())
+            .then(|| RefCell::new(system.clone())),
         })
     }
 
@@ -210,11 +216,18 @@ impl<'s> Search<'s> {
         false
     }
 
+    /// Returns the least that any row of a loop determines beyond the others at a state, over its
+    /// usual length: zero where they are dependent.
     fn margin(&self, numbers: &[f64]) -> f64 {
         let loops = self.gradients.loops.iter();
         let all = loops.zip(self.gradients.at(numbers));
-        all.map(|(l, rows)| margin(rows, l.rows.iter().map(|&r| self.usual[r])))
-            .fold(f64::INFINITY, f64::min)
+        all.map(|(l, mut rows)| {
+            for (row, &r) in rows.iter_mut().zip(&l.rows) {
+                row.iter_mut().for_each(|x| *x /= self.usual[r]);
+            }
+            margin(rows)
+        })
+        .fold(f64::INFINITY, f64::min)
     }
 
     /// Returns the state at a part `s` of the way between two others: positions cubic in time,
@@ -241,14 +254,35 @@ impl<'s> Search<'s> {
             })
             .collect();
         mover.normalize(&mut q);
-        if closed {
-            let x = n[l.x()].to_vec();
-            let mut own = scene.configuration.clone();
-            let ignored = |_: Configured<'_>, r: usize| !self.rows.contains(&r);
-            assemble::close(&scene, &mut own, n[Layout::TIME], &mut q, &x, ignored);
-        }
         n[l.q()].copy_from_slice(&q);
+        if closed {
+            self.close(&mut n);
+        }
         n
+    }
+
+    /// Puts the positions of a state onto the rows: by the projections of the steps, and where
+    /// these find none as assembly does.
+    fn close(&self, numbers: &mut [f64]) {
+        let (scene, l) = (self.scene, self.scene.layout);
+        let t = numbers[Layout::TIME];
+        if let Some(system) = &self.projections {
+            let mut system = system.borrow_mut();
+            let mut y = numbers[l.y()].to_vec();
+            system.project_anew();
+            if system.put_on_rows(t, &mut y).is_ok() {
+                let there = system.numbers_at(t, &y);
+                if system.worst_gap(&there) <= GAP {
+                    numbers[l.q()].copy_from_slice(l.state(&y).q);
+                    return;
+                }
+            }
+        }
+        let (mut q, x) = (numbers[l.q()].to_vec(), numbers[l.x()].to_vec());
+        let mut own = scene.configuration.clone();
+        let ignored = |_: Configured<'_>, r: usize| !self.rows.contains(&r);
+        assemble::close(&scene, &mut own, t, &mut q, &x, ignored);
+        numbers[l.q()].copy_from_slice(&q);
     }
 
     /// Returns states so close to each other that no angle changes much between them, each with

@@ -18,24 +18,64 @@ const MANY_COLUMNS: usize = 150;
 /// Entry of a row, whose length is near one, that is dropped: far below [`DEPENDENT`].
 const NEGLIGIBLE: f64 = 1e-14;
 
+/// Rows of numbers, one behind the other.
+#[derive(Clone, Debug)]
+pub(super) struct Rows {
+    values: Vec<f64>,
+    n_columns: usize,
+}
+
+impl Rows {
+    pub fn zeros(n_rows: usize, n_columns: usize) -> Self {
+        Self {
+            values: vec![0.0; n_rows * n_columns],
+            n_columns,
+        }
+    }
+
+    pub fn row(&self, r: usize) -> &[f64] {
+        &self.values[r * self.n_columns..][..self.n_columns]
+    }
+
+    pub fn row_mut(&mut self, r: usize) -> &mut [f64] {
+        &mut self.values[r * self.n_columns..][..self.n_columns]
+    }
+
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[f64]> {
+        // rows without columns are none
+        self.values.chunks_exact(self.n_columns.max(1))
+    }
+
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
+        self.values.chunks_exact_mut(self.n_columns.max(1))
+    }
+}
+
+/// Returns the least that any of some rows determines beyond the others: zero where they are
+/// dependent.
+pub(super) fn margin(rows: Rows) -> f64 {
+    let n = rows.iter().len();
+    let (chosen, least) = select(rows, |_| false, n);
+    if chosen.len() < n { 0.0 } else { least }
+}
+
 /// Chooses rows, the preferred ones unless another determines three times as much; the chosen ones,
 /// and the least that any of them determined. Unlike in `numeric::rank` a short row determines
 /// little.
 pub(super) fn select(
-    rows: Vec<Vec<f64>>,
+    rows: Rows,
     preferred: impl Fn(usize) -> bool,
     most: usize,
 ) -> (Vec<usize>, f64) {
-    let n_columns = rows.first().map_or(0, Vec::len);
-    let sizes = rows.iter().map(|row| norm(row)).collect();
-    if n_columns < MANY_COLUMNS {
-        let mut rows = rows;
+    let sizes = rows.iter().map(norm).collect();
+    if rows.n_columns < MANY_COLUMNS {
+        let (mut rows, mut unit) = (rows, Vec::new());
         let take = |pivot: usize, open: &[usize], sizes: &mut [f64]| {
-            take_away(&mut rows, pivot, open, sizes);
+            take_away((&mut rows, &mut unit), pivot, open, sizes);
         };
         return choose(sizes, preferred, most, take);
     }
-    let mut rows = Reflected::new(&rows, n_columns);
+    let mut rows = Reflected::new(&rows);
     let take = |pivot: usize, _: &[usize], sizes: &mut [f64]| rows.take_away(pivot, sizes);
     choose(sizes, preferred, most, take)
 }
@@ -73,18 +113,23 @@ fn choose(
     (chosen, least)
 }
 
-/// Takes what a chosen row determines from the open ones (1).
-fn take_away(rows: &mut [Vec<f64>], pivot: usize, open: &[usize], sizes: &mut [f64]) {
+/// Takes what a chosen row determines from the open ones (1). `unit`: a place for its unit.
+fn take_away(
+    (rows, unit): (&mut Rows, &mut Vec<(usize, f64)>),
+    pivot: usize,
+    open: &[usize],
+    sizes: &mut [f64],
+) {
     let length = sizes[pivot];
     // rows that have nothing where the chosen one has something stay as they are
-    let entries = rows[pivot].iter().enumerate().filter(|e| *e.1 != 0.0);
-    let mut unit: Vec<(usize, f64)> = Vec::with_capacity(rows[pivot].len());
+    let entries = rows.row(pivot).iter().enumerate().filter(|e| *e.1 != 0.0);
+    unit.clear();
     unit.extend(entries.map(|(k, x)| (k, x / length)));
     for &r in open {
+        let row = rows.row_mut(r);
         let mut changed = false;
         // twice, so that nothing is left of it but rounding
         for _ in 0..2 {
-            let row = &mut rows[r];
             let along: f64 = unit.iter().map(|&(k, x)| row[k] * x).sum();
             if along == 0.0 {
                 break;
@@ -93,7 +138,7 @@ fn take_away(rows: &mut [Vec<f64>], pivot: usize, open: &[usize], sizes: &mut [f
             changed = true;
         }
         if changed {
-            sizes[r] = norm(&rows[r]);
+            sizes[r] = norm(row);
         }
     }
 }
@@ -115,8 +160,9 @@ struct Reflected {
 }
 
 impl Reflected {
-    fn new(rows: &[Vec<f64>], n_columns: usize) -> Self {
-        let sparse = |row: &Vec<f64>| -> Vec<(usize, f64)> {
+    fn new(rows: &Rows) -> Self {
+        let n_columns = rows.n_columns;
+        let sparse = |row: &[f64]| -> Vec<(usize, f64)> {
             let entries = row.iter().copied().enumerate();
             entries.filter(|e| e.1 != 0.0).collect()
         };
@@ -211,7 +257,7 @@ mod tests {
     use super::*;
 
     /// Rows of a chain of loops: each reads three columns; a tenth follow from others.
-    fn chain(n: usize) -> Vec<Vec<f64>> {
+    fn chain(n: usize) -> Rows {
         let row = |k: usize| {
             let mut row = vec![0.0; n + 2];
             for j in 0..3 {
@@ -226,21 +272,25 @@ mod tests {
             pairs.map(|(a, b)| 0.7 * a - 0.5 * b).collect()
         };
         let sums: Vec<Vec<f64>> = (9..n).step_by(10).map(of_two).collect();
-        rows.iter().cloned().chain(sums).collect()
+        let all: Vec<Vec<f64>> = rows.iter().cloned().chain(sums).collect();
+        Rows {
+            values: all.concat(),
+            n_columns: n + 2,
+        }
     }
 
     #[test]
     fn reflections_choose_the_rows_that_differences_choose() {
         for n in [20, 60, 200] {
             let rows = chain(n);
-            let sizes: Vec<f64> = rows.iter().map(|row| norm(row)).collect();
+            let sizes: Vec<f64> = rows.iter().map(norm).collect();
             for preference in [1, 2, 3] {
                 let preferred = |r: usize| r.is_multiple_of(preference);
-                let mut dense = rows.clone();
+                let (mut dense, mut unit) = (rows.clone(), Vec::new());
                 let by_differences = choose(sizes.clone(), preferred, usize::MAX, |p, o, s| {
-                    take_away(&mut dense, p, o, s);
+                    take_away((&mut dense, &mut unit), p, o, s);
                 });
-                let mut sparse = Reflected::new(&rows, n + 2);
+                let mut sparse = Reflected::new(&rows);
                 let by_reflections = choose(sizes.clone(), preferred, usize::MAX, |p, _, s| {
                     sparse.take_away(p, s);
                 });
@@ -256,8 +306,8 @@ mod tests {
     fn what_is_left_of_a_row_falls_off_along_a_chain() {
         let n = 400;
         let rows = chain(n);
-        let mut left = Reflected::new(&rows, n + 2);
-        let sizes: Vec<f64> = rows.iter().map(|row| norm(row)).collect();
+        let mut left = Reflected::new(&rows);
+        let sizes: Vec<f64> = rows.iter().map(norm).collect();
         let mut longest = 0;
         let take = |pivot: usize, _: &[usize], sizes: &mut [f64]| {
             left.take_away(pivot, sizes);

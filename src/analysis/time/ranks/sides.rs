@@ -11,16 +11,16 @@
 //! loop (rows that share coordinates) has a B of its own.
 
 use super::passes::DEPENDENT_THERE;
-use super::select;
+use super::selection::{self, Rows};
 use super::valley::Valley;
 use crate::analysis::system::{RowGradients, System};
 use crate::analysis::time::states::{Cubic, Node};
 use crate::expr::program::{Program, Work};
 use crate::numeric::eigenvalues::eigenvalues;
 use crate::numeric::envelope;
-use crate::scene::mover::Mover;
 use crate::scene::programs::weights;
-use nalgebra::{DMatrix, DVectorView};
+use nalgebra::{Cholesky, DMatrix, DVectorView, Dyn};
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 /// Rows of the largest loop whose eigenvalues are found; of a larger one signs of determinants must
@@ -33,7 +33,7 @@ const PARTS_OF_WAY: [f64; 8] = [0.35, 0.5, 0.65, 0.75, 0.84, 0.91, 0.96, 1.0];
 /// 150° is not the passage of a singular position.
 const NEARLY_REAL: f64 = 0.5;
 /// Violation of a row, relative to what counts as one, beyond which there is no state.
-const GAP: f64 = 1e-12;
+pub(super) const GAP: f64 = 1e-12;
 /// Failures to find a state after which there is none: one very near the position may be hard to
 /// find, but within a gap between branches all are.
 const MAX_FAILURES: u32 = 3;
@@ -136,7 +136,7 @@ impl Sides {
 
     /// Returns the loops of which a combination of rows has gone through zero between two states.
     pub fn turned(from: &Side, to: &Side) -> Vec<usize> {
-        let turned = |&k: &usize| has_turned(&from.0[k], &to.0[k]);
+        let turned = |&k: &usize| Beginning::at(&from.0[k]).has_turned(&to.0[k]);
         (0..from.0.len()).filter(turned).collect()
     }
 
@@ -161,17 +161,13 @@ impl Sides {
     /// its usual length: zero where rows are dependent.
     fn margin(&self, loops: &[usize], side: &Side) -> f64 {
         let of = |&k: &usize| {
-            let rows = side.0[k].row_iter().zip(&self.usual[k]);
-            let rows: Vec<Vec<f64>> = rows
-                .map(|(row, usual)| {
-                    row.iter()
-                        .map(|x| x / usual.max(f64::MIN_POSITIVE))
-                        .collect()
-                })
-                .collect();
-            let n = rows.len();
-            let (chosen, least) = select(rows, |_| false, n);
-            if chosen.len() < n { 0.0 } else { least }
+            let block = &side.0[k];
+            let mut rows = Rows::zeros(block.nrows(), block.ncols());
+            for (i, (row, usual)) in rows.iter_mut().zip(&self.usual[k]).enumerate() {
+                let usual = usual.max(f64::MIN_POSITIVE);
+                (row.iter_mut().enumerate()).for_each(|(j, x)| *x = block[(i, j)] / usual);
+            }
+            selection::margin(rows)
         };
         loops.iter().map(of).fold(f64::INFINITY, f64::min)
     }
@@ -197,7 +193,7 @@ impl Sides {
             let Some((node, side)) = self.state_between(system, [&meeting, b], t) else {
                 return true;
             };
-            let turned = |&k: &usize| has_turned(&side.0[k], &to.0[k]);
+            let turned = |&k: &usize| Beginning::at(&side.0[k]).has_turned(&to.0[k]);
             if t <= a.t || !loops.iter().any(turned) {
                 return true;
             }
@@ -214,9 +210,9 @@ impl Sides {
         ends: [&Node; 2],
         t: f64,
     ) -> Option<(Node, Side)> {
-        let (l, mover) = (system.scene.layout, Mover::new(&system.scene));
+        let (l, mover) = (system.scene.layout, system.mover());
         let mut y = ends[0].y.clone();
-        Cubic::new(&mover, l, ends).at(&mover, t, &mut y);
+        Cubic::new(mover, l, ends).at(mover, t, &mut y);
         system.project_anew();
         let found = system.put_on_rows(t, &mut y).is_ok();
         let numbers = system.numbers_at(t, &y);
@@ -238,6 +234,8 @@ impl Sides {
         // σ falls and rises in proportion to time, no faster than the rows change
         let seen = margins[0] + margins[1];
         let mut slope = seen.max(self.change(loops, [from, to])) / (b.t - a.t);
+        let beginnings: Vec<Beginning> =
+            (loops.iter().map(|&k| Beginning::at(&from.0[k]))).collect();
         let mut last = from.clone();
         let mut failed = 0;
         let ends = [a.clone(), b.clone()];
@@ -265,7 +263,8 @@ impl Sides {
                 continue;
             };
             let margin = self.margin(loops, &side);
-            if loops.iter().any(|&k| has_turned(&from.0[k], &side.0[k])) {
+            let mut ways = beginnings.iter().zip(loops);
+            if ways.any(|(beginning, &k)| beginning.has_turned(&side.0[k])) {
                 (b, margins[1]) = (node, margin);
             } else {
                 slope = slope.max(self.change(loops, [&last, &side]) / (node.t - a.t));
@@ -343,27 +342,49 @@ pub(super) fn loops(rows: &[usize], entries: &[(usize, usize)], n_v: usize) -> V
     loops.into_values().collect()
 }
 
-/// Returns whether a combination of rows has gone through zero from one state to another.
-fn has_turned(from: &DMatrix<f64>, to: &DMatrix<f64>) -> bool {
-    if from.nrows() > MAX_EIGENVALUES {
-        let (square, mixed) = (products(from, from), products(from, to));
-        return envelope::is_positive(&square)
-            && !envelope::is_positive(&(&mixed + mixed.transpose()))
-            && changes_sign(&square, &mixed);
+/// The rows of a loop at the state from which others are judged.
+struct Beginning<'a> {
+    rows: &'a DMatrix<f64>,
+    /// G₀ A G₀ᵀ
+    square: OnceCell<DMatrix<f64>>,
+    /// its factor, where it is positive definite
+    factor: OnceCell<Option<Cholesky<f64, Dyn>>>,
+}
+
+impl<'a> Beginning<'a> {
+    fn at(rows: &'a DMatrix<f64>) -> Self {
+        Self {
+            rows,
+            square: OnceCell::new(),
+            factor: OnceCell::new(),
+        }
     }
-    let (square, mixed) = (from * from.transpose(), from * to.transpose());
-    // B is similar to L⁻¹ G₁ A G₀ᵀ L⁻ᵀ, whose eigenvalues lie in its field of values
-    if (&mixed + mixed.transpose()).cholesky().is_some() {
-        return false;
+
+    /// Returns whether a combination of the rows has gone through zero from here to another state.
+    fn has_turned(&self, to: &DMatrix<f64>) -> bool {
+        let n = self.rows.nrows();
+        let mixed = products(self.rows, to);
+        let twice = DMatrix::from_fn(n, n, |i, j| mixed[(i, j)] + mixed[(j, i)]);
+        let square = || self.square.get_or_init(|| products(self.rows, self.rows));
+        if n > MAX_EIGENVALUES {
+            return envelope::is_positive(square())
+                && !envelope::is_positive(&twice)
+                && changes_sign(square(), &mixed);
+        }
+        // B is similar to L⁻¹ G₁ A G₀ᵀ L⁻ᵀ, whose eigenvalues lie in its field of values
+        if twice.cholesky().is_some() {
+            return false;
+        }
+        let factor = self.factor.get_or_init(|| square().clone().cholesky());
+        let Some(factor) = factor else {
+            return false;
+        };
+        let b = factor.solve(&mixed);
+        if b.iter().any(|x| !x.is_finite()) {
+            return false;
+        }
+        has_negative(b).unwrap_or_else(|| changes_sign(square(), &mixed))
     }
-    let Some(factor) = square.clone().cholesky() else {
-        return false;
-    };
-    let b = factor.solve(&mixed);
-    if b.iter().any(|x| !x.is_finite()) {
-        return false;
-    }
-    has_negative(b).unwrap_or_else(|| changes_sign(&square, &mixed))
 }
 
 /// Returns whether the determinant is negative somewhere on the way from a matrix whose own is
@@ -393,18 +414,18 @@ fn has_negative(b: DMatrix<f64>) -> Option<bool> {
 
 /// Returns `A Bᵀ` of two matrices with many zeros.
 fn products(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    fn entries<'c>(
+        column: &'c DVectorView<'_, f64>,
+    ) -> impl Iterator<Item = (usize, f64)> + use<'c> {
+        column.iter().copied().enumerate().filter(|e| e.1 != 0.0)
+    }
     let mut out = DMatrix::zeros(a.nrows(), b.nrows());
+    let mut others = Vec::with_capacity(b.nrows());
     for (a, b) in a.column_iter().zip(b.column_iter()) {
-        let entries = |c: DVectorView<'_, f64>| -> Vec<(usize, f64)> {
-            c.iter()
-                .copied()
-                .enumerate()
-                .filter(|e| e.1 != 0.0)
-                .collect()
-        };
-        let b = entries(b);
-        for (i, x) in entries(a) {
-            b.iter().for_each(|&(j, y)| out[(i, j)] += x * y);
+        others.clear();
+        others.extend(entries(&b));
+        for (i, x) in entries(&a) {
+            others.iter().for_each(|&(j, y)| out[(i, j)] += x * y);
         }
     }
     out
