@@ -74,6 +74,7 @@ fn cases() -> Vec<Case> {
             0.002,
             &[
                 ("PART/4.MASS", 0.02373),
+                ("PART/7.MASS", 0.00706),
                 ("SPRINGDAMPER/1.K", 4530.0),
                 ("SPRINGDAMPER/1.C", 0.0),
                 ("MARKER/30.QP(1)", 0.014),
@@ -150,9 +151,13 @@ fn rows_that_are_recorded_again_are_runs_of_the_changed_model_alone_to_the_bit()
                 point[k] *= factor;
                 points.push(point);
             }
-            let mut point = given.clone();
-            point[k] = VALUES[k % VALUES.len()];
-            points.push(point);
+            // numbers that fold, whose products are 1, and that are those of another element
+            let others = VALUES.into_iter().chain([1.0 / given[k], given[0]]);
+            for value in others.filter(|x| x.is_finite()) {
+                let mut point = given.clone();
+                point[k] = value;
+                points.push(point);
+            }
         }
         // each number at a place and under loads of their own
         let shifted: Vec<f64> = given.iter().map(|x| x * 1.02).collect();

@@ -193,9 +193,11 @@ impl Builder {
         }
         if ca.is_some() || cb.is_some() {
             self.reads_number();
-            return self.binary_anew(op, a, b, [ca, cb]);
+            if !is_one_of_many(op, ca, cb) {
+                return self.binary_anew(op, a, b, [ca, cb]);
+            }
         }
-        self.binary_by_tape(op, a, b)
+        self.binary_by_tape(op, a, b, [ca, cb])
     }
 
     /// Records an operation on two values, whatever was asked before. Not both are constant.
@@ -354,6 +356,7 @@ impl Builder {
         let (cx, cy) = (self.constant_of(x), self.constant_of(y));
         if let (Mul, Mul) = (op, inner) {
             let (k, v) = cx.map(|k| (k, y)).or(cy.map(|k| (k, x)))?;
+            self.reads_number();
             let both = c * k;
             return both.is_normal().then(|| {
                 let both = self.constant(both);
@@ -374,6 +377,7 @@ impl Builder {
             Sub => (k - c, plus),
             _ => return None,
         };
+        self.reads_number();
         (sum.is_normal() || sum == 0.0).then(|| {
             let sum = self.constant(sum);
             self.binary(if plus { Add } else { Sub }, sum, v)
@@ -717,6 +721,20 @@ impl Builder {
         self.arguments[node.list().unwrap_or(0..0)]
             .iter()
             .fold(seed, |h, v| mix(h, u64::from(v.0)))
+    }
+}
+
+/// Returns whether an operation of a value and a number is simplified as with almost every other
+/// number there. Not so with 0, 1 and −1, and with divisors that multiply as well.
+fn is_one_of_many(op: BinaryOp, ca: Option<f64>, cb: Option<f64>) -> bool {
+    use BinaryOp::{Add, Div, Mul, Sub};
+    let Some(c) = ca.or(cb) else { return true };
+    match op {
+        Add | Sub => c != 0.0,
+        Div if cb.is_none() => c != 0.0,
+        Mul => c != 0.0 && c.abs() != 1.0,
+        Div => c != 0.0 && c.abs() != 1.0 && !is_power_of_two(c),
+        _ => false,
     }
 }
 

@@ -20,7 +20,7 @@ use super::node::{Node, Value};
 use super::operation::BinaryOp;
 use super::run::Program;
 use super::schedule;
-use super::tape::{End, MOST_ENDS, Made, Question};
+use super::tape::{End, MOST_ENDS, MOST_QUESTIONS, Made, Question, Tape};
 
 impl Builder {
     /// Goes on without the tape that is followed: finds equal nodes by itself.
@@ -84,8 +84,18 @@ impl Builder {
     /// Writes a node that was asked for, and the answer.
     #[inline]
     pub(super) fn write_node(&mut self, node: Node, answer: Value) {
+        self.write_question(Question::Node(node), answer);
+    }
+
+    /// Writes a question and its answer; forgets the tape of a recording that is too long.
+    fn write_question(&mut self, question: Question, answer: Value) {
         if let Some(taped) = &mut self.taped {
-            taped.tape.questions.push((Question::Node(node), answer));
+            if taped.tape.questions.len() < MOST_QUESTIONS {
+                taped.tape.questions.push((question, answer));
+            } else {
+                taped.tape = Tape::default();
+                self.taped = None;
+            }
         }
     }
 
@@ -111,12 +121,19 @@ impl Builder {
         self.write_node(node, answer);
     }
 
-    /// Records an operation on two values that are no numbers: as the tape says, where it is
-    /// followed and the answer read no number.
-    pub(super) fn binary_by_tape(&mut self, op: BinaryOp, a: Value, b: Value) -> Value {
+    /// Records an operation on two values, one of which may be a number that is simplified as most
+    /// are: as the tape says, where it is followed and the answer read no other number.
+    #[inline]
+    pub(super) fn binary_by_tape(
+        &mut self,
+        op: BinaryOp,
+        a: Value,
+        b: Value,
+        numbers: [Option<f64>; 2],
+    ) -> Value {
         let n = self.nodes.len();
         let Some(taped) = self.taped.as_deref_mut() else {
-            return self.binary_anew(op, a, b, [None; 2]);
+            return self.binary_anew(op, a, b, numbers);
         };
         if let Some((k, list)) = taped.next {
             match taped.tape.questions.get(k) {
@@ -138,23 +155,26 @@ impl Builder {
                 }
                 Some(&(Question::ByNumbers(o, x, y), _)) if (o, x, y) == (op, a, b) => {
                     taped.next = Some((k + 1, list));
-                    return self.binary_anew(op, a, b, [None; 2]);
+                    return self.binary_anew(op, a, b, numbers);
                 }
                 _ => self.leave_tape(),
             }
         }
-        self.write_binary(op, a, b)
+        self.write_binary(op, a, b, numbers)
     }
 
     /// Records an operation on two values and writes it on the tape.
-    fn write_binary(&mut self, op: BinaryOp, a: Value, b: Value) -> Value {
-        let mut before = (0, 0);
-        if let Some(taped) = &mut self.taped {
-            before = (taped.tape.questions.len(), taped.reads);
-            let question = Question::ByNumbers(op, a, b);
-            taped.tape.questions.push((question, a));
-        }
-        let answer = self.binary_anew(op, a, b, [None; 2]);
+    fn write_binary(
+        &mut self,
+        op: BinaryOp,
+        a: Value,
+        b: Value,
+        numbers: [Option<f64>; 2],
+    ) -> Value {
+        let tape = self.taped.as_deref();
+        let before = tape.map_or((0, 0), |t| (t.tape.questions.len(), t.reads));
+        self.write_question(Question::ByNumbers(op, a, b), a);
+        let answer = self.binary_anew(op, a, b, numbers);
         let (place, reads) = before;
         if let Some(taped) = self.taped.as_deref_mut()
             && taped.reads == reads
@@ -273,6 +293,7 @@ mod tests {
     use super::*;
     use crate::expr::functions::Function;
     use crate::expr::program::structure::Structures;
+    use crate::expr::program::tape::Taped;
     use crate::expr::program::{Comparison, Folding, UnaryOp};
 
     /// Numbers that fold, that are equal, and that are not.
@@ -386,6 +407,67 @@ mod tests {
         // one that folds
         assert!(!followed([0.4, 0.0]));
         assert!(followed([-0.5, 0.0]));
+    }
+
+    #[test]
+    fn numbers_that_meet_are_read_again() {
+        let pairs = [
+            [0.3, 7.1],
+            [0.4, 5.0],
+            [0.5, 2.0],
+            [0.4, -2.5],
+            [1e-200, 1e-200],
+            [-0.3, 0.3],
+            [f64::NAN, 2.0],
+            [f64::INFINITY, 0.3],
+        ];
+        let recorded = |b: &mut Builder, numbers: [f64; 2]| {
+            let x = b.input(Input::Slot(0));
+            let [c, d] = numbers.map(|number| b.constant(number));
+            for (inner, outer) in [
+                (BinaryOp::Mul, BinaryOp::Mul),
+                (BinaryOp::Add, BinaryOp::Add),
+                (BinaryOp::Sub, BinaryOp::Add),
+                (BinaryOp::Div, BinaryOp::Div),
+            ] {
+                let within = b.binary(inner, x, c);
+                b.binary(outer, within, d);
+                b.binary(outer, d, within);
+            }
+            format!("{:?}", b.nodes)
+        };
+        for first in pairs {
+            for second in pairs {
+                let structures = Structures::default();
+                for numbers in [first, second] {
+                    structures.next_generation();
+                    let _looking = structures.look();
+                    let by_tape =
+                        recorded(&mut Builder::again_or_new(Folding::Structural), numbers);
+                    let alone = recorded(&mut Builder::new(Folding::Structural), numbers);
+                    assert_eq!(by_tape, alone, "{first:?} {second:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_recording_that_is_too_long_leaves_no_tape() {
+        let structures = Structures::default();
+        let mut lengths = Vec::new();
+        for n in [10, MOST_QUESTIONS, 10] {
+            structures.next_generation();
+            let _looking = structures.look();
+            let mut b = Builder::again_or_new(Folding::Structural);
+            let mut x = b.input(Input::Slot(0));
+            for _ in 0..n {
+                x = b.unary(UnaryOp::Sin, x);
+            }
+            let questions = |taped: &Taped| taped.tape.questions.len();
+            lengths.push(b.taped.as_deref().map(questions));
+            assert_eq!(b.len(), n + 1);
+        }
+        assert_eq!(lengths, [Some(11), None, Some(11)]);
     }
 
     #[test]

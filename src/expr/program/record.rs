@@ -180,30 +180,23 @@ impl fmt::Debug for Condition<'_> {
     }
 }
 
-impl std::ops::Add for Sym<'_> {
-    type Output = Self;
-    fn add(self, b: Self) -> Self {
-        self.binary(BinaryOp::Add, b)
-    }
+/// Makes the operators, of which those on two numbers need no builder.
+macro_rules! operators {
+    ($($trait:ident $method:ident $operator:tt,)+) => { $(
+        impl std::ops::$trait for Sym<'_> {
+            type Output = Self;
+            #[inline]
+            fn $method(self, b: Self) -> Self {
+                match (self, b) {
+                    (Sym::Constant(x), Sym::Constant(y)) => Sym::Constant(x $operator y),
+                    _ => self.binary(BinaryOp::$trait, b),
+                }
+            }
+        }
+    )+ };
 }
-impl std::ops::Sub for Sym<'_> {
-    type Output = Self;
-    fn sub(self, b: Self) -> Self {
-        self.binary(BinaryOp::Sub, b)
-    }
-}
-impl std::ops::Mul for Sym<'_> {
-    type Output = Self;
-    fn mul(self, b: Self) -> Self {
-        self.binary(BinaryOp::Mul, b)
-    }
-}
-impl std::ops::Div for Sym<'_> {
-    type Output = Self;
-    fn div(self, b: Self) -> Self {
-        self.binary(BinaryOp::Div, b)
-    }
-}
+operators!(Add add +, Sub sub -, Mul mul *, Div div /,);
+
 impl std::ops::Neg for Sym<'_> {
     type Output = Self;
     fn neg(self) -> Self {

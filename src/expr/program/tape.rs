@@ -11,16 +11,19 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Programs and counts that a tape keeps, at most.
 pub(super) const MOST_ENDS: usize = 256;
+/// Questions that a tape keeps, at most; a recording that asks more is made anew. A question takes
+/// 24 bytes.
+pub(super) const MOST_QUESTIONS: usize = 1 << 20;
 
 /// A question of a builder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Question {
     /// a node, new or one that is there
     Node(Node),
-    /// an operation on values that are no numbers, whose answer read no number, and took so many
-    /// questions after this one
+    /// an operation on values, at most one of them a number that is simplified as most are, whose
+    /// answer read no other number, and took so many questions after this one
     Binary(BinaryOp, Value, Value, u32),
-    /// one whose answer read numbers
+    /// one whose answer read other numbers
     ByNumbers(BinaryOp, Value, Value),
 }
 
