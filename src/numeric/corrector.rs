@@ -11,6 +11,12 @@
 //! too is the step at fault. The measured rate ρ of convergence predicts the error left,
 //! ρ/(1−ρ) ‖Δ‖, which must be a small part of the error permitted in a step.
 //!
+//! *Unexplained corrections*: a large motion that converges must not hide an unknown beside it that
+//! does not. (A mass that a steep friction held: with the slope of sticking, corrections are a
+//! millionth of the missing acceleration, and every one is as large as the one before.) So with a
+//! kept matrix each unknown whose correction hardly falls, by the ratio r, is judged alone: what
+//! such corrections add up to, r/|1−r| of the last, must be small, too.
+//!
 //! Unknowns whose error is not controlled are judged loosely, multipliers of higher index not at
 //! all: they are linear in the rest of the iteration and carry rounding errors of order 1/h², which
 //! no iteration removes.
@@ -31,6 +37,8 @@ const SLOWEST_RATE: f64 = 0.9;
 /// Power of ρ/(1−ρ) from step to step: the rate measured with a kept matrix is trusted less and
 /// less.
 const RATE_AGEING: f64 = 0.7;
+/// Ratio of two successive corrections of an unknown above which the matrix does not explain it.
+const UNEXPLAINED: f64 = 0.9;
 /// Size of a correction that is rounding, relative to the magnitudes of the unknowns.
 pub(super) const ROUNDING: f64 = 1e-13;
 /// Accuracy asked of uncontrolled algebraic unknowns, relative to their magnitude.
@@ -56,6 +64,8 @@ pub struct Corrector {
     attention: Vec<f64>,
     /// residual, then correction   (n)
     delta: Vec<f64>,
+    /// the correction before   (n)
+    last: Vec<f64>,
     /// cj₀, the coefficient of the factors, in 1/s; 0 when there are none
     cj: f64,
     /// h of (3), the scaling step of the factors, in s
@@ -156,6 +166,7 @@ impl Corrector {
             unknowns: vec![0; n],
             attention: vec![1.0; n],
             delta: vec![0.0; n],
+            last: vec![0.0; n],
             cj: 0.0,
             h: 1.0,
             rate_factor: 1.0,
@@ -287,6 +298,7 @@ impl Corrector {
         stats: &mut Stats,
     ) -> Result<(), Trouble> {
         at.e.fill(0.0);
+        self.last.fill(f64::INFINITY);
         // the matrix ages, so does what is known of its convergence
         self.rate_factor = self.rate_factor.max(f64::EPSILON).powf(RATE_AGEING);
         let damping = if cj == self.cj {
@@ -311,7 +323,7 @@ impl Corrector {
             worst_row = worst_index(self.delta.iter().copied());
             self.factors.solve(&mut self.delta);
             stats.newton_iterations += 1;
-            let Some(size) = self.apply(cj, at) else {
+            let Some((size, is_explained)) = self.apply(cj, at) else {
                 return Err(Trouble::may_pass(Reason::Newton(worst_row)));
             };
 
@@ -336,7 +348,7 @@ impl Corrector {
                 factor = rate / (1.0 - rate);
                 (self.rate_factor, self.measured) = (factor, first);
             }
-            if factor * size <= PERMITTED_REST && (fresh || iteration > 0) {
+            if factor * size <= PERMITTED_REST && (fresh || iteration > 0 && is_explained) {
                 return Ok(());
             }
         }
@@ -346,9 +358,10 @@ impl Corrector {
         })
     }
 
-    /// Adds the correction to the unknowns; returns its size, or `None` if it is not finite.
-    fn apply(&self, cj: f64, at: &mut Iterate) -> Option<f64> {
-        let mut size = 0.0;
+    /// Adds the correction to the unknowns; returns its size, and whether those of all unknowns
+    /// that hardly fall add up to little; or `None` if it is not finite.
+    fn apply(&mut self, cj: f64, at: &mut Iterate) -> Option<(f64, bool)> {
+        let (mut size, mut is_explained) = (0.0, true);
         let mut sum = 0.0;
         for i in 0..at.y.len() {
             let d = self.delta[i] * Self::power(self.h, -(self.unknowns[i] as i8));
@@ -358,8 +371,14 @@ impl Corrector {
             let change = (d * at.scale[i] * self.attention[i]).abs();
             sum += d.abs();
             size = if change > size { change } else { size };
+            let last = std::mem::replace(&mut self.last[i], d);
+            let ratio = d / last;
+            // what corrections like these add up to
+            let left = ratio / (1.0 - ratio).abs().max(f64::EPSILON) * change;
+            let is_left = ratio > UNEXPLAINED && left > PERMITTED_REST;
+            is_explained &= !(is_left && change > at.rounding);
         }
-        (f64::is_finite(sum) && f64::is_finite(size)).then_some(size)
+        (f64::is_finite(sum) && f64::is_finite(size)).then_some((size, is_explained))
     }
 
     /// Returns 1 for each unknown whose error is controlled, and 0 for the others   (n)

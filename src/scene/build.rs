@@ -273,23 +273,24 @@ impl<'m> Builder<'m> {
         s.last_freedom = last;
         let reach = s.parts.iter().map(|p| p.initial.position.norm());
         let arms = s.markers.iter().map(|m| m.frame.position.norm());
-        let length = reach
-            .chain(arms)
-            .filter(|x| x.is_finite())
-            .fold(0.0, f64::max);
-        s.length = if length > 0.0 { length } else { 1.0 };
-        let extent = self.extent();
+        let reach = reach.chain(arms).filter(|x| x.is_finite());
+        let reach = reach.fold(0.0, f64::max);
+        let reach = if reach > 0.0 { reach } else { 1.0 };
+        let [diagonal, gyration] = self.extents(reach);
+        let size = if diagonal > 0.0 { diagonal } else { gyration };
+        let extent = diagonal.max(gyration);
         let s = &mut self.scene;
-        s.extent = if extent > 0.0 {
-            (TYPICAL_EXTENTS * extent).min(s.length)
-        } else {
-            s.length
-        };
+        (s.size, s.length, s.extent) = (reach, reach, reach);
+        if size > 0.0 {
+            s.size = size;
+            s.extent = (TYPICAL_EXTENTS * extent).min(reach);
+        }
     }
 
-    /// Returns the diagonal of what moves, as the dataset places it, or the largest radius of
-    /// gyration if that is more: moving the whole model does not change it.
-    fn extent(&self) -> f64 {
+    /// Returns the diagonal of what moves, as the dataset places it, and the largest radius of
+    /// gyration, 0 where there is none: moving the whole model does not change them. `reach`: how
+    /// far from the origin it is.
+    fn extents(&self, reach: f64) -> [f64; 2] {
         let s = &self.scene;
         let points = s.markers.iter().filter_map(|m| {
             let part = &s.parts[m.part?];
@@ -305,13 +306,13 @@ impl<'m> Builder<'m> {
         };
         let diagonal = Vec3(std::array::from_fn(span)).norm();
         // the rounding of places far away is no extent
-        let noise = EXTENT_OF_ROUNDING * s.length;
+        let noise = EXTENT_OF_ROUNDING * reach;
         let gyration = self.model.parts.values().map(|part| {
             let largest = part.ip[..3].iter().fold(0.0_f64, |m, i| m.max(*i));
             (largest / part.mass).sqrt()
         });
         let gyration = gyration.filter(|r| r.is_finite()).fold(0.0, f64::max);
-        (if diagonal > noise { diagonal } else { 0.0 }).max(gyration)
+        [if diagonal > noise { diagonal } else { 0.0 }, gyration]
     }
 
     /// Unknowns that functions define through each other.

@@ -491,11 +491,11 @@ impl Builder<'_> {
         }
         let normal = match contact.law {
             ContactLaw::Poisson => {
-                let weight = self.scene.gravity.norm() * self.scene.length;
+                let weight = self.scene.gravity.norm() * self.scene.size;
                 let fall = if weight > 0.0 {
                     weight.sqrt()
                 } else {
-                    self.scene.length
+                    self.scene.size
                 };
                 approximate.push("POISSON: forces within an impact are those of a spring that is softer on the way back");
                 Normal::Poisson {

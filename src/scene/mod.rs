@@ -454,10 +454,14 @@ pub struct Scene {
     pub initial_q: Vec<f64>,
     /// what was left out
     pub warnings: Vec<crate::diagnostic::Diagnostic>,
-    /// a typical length of the mechanism, for tolerances and scales
+    /// a typical length of the coordinates, for tolerances and scales that may not be rounding: how
+    /// far the mechanism is from the origin
     pub length: f64,
-    /// a typical length of its motion, however far away the whole stands: `length`, or extents of
-    /// what moves
+    /// how large the mechanism is, wherever the origin is: what is told and what moves at assembly
+    /// depends on this alone
+    pub(crate) size: f64,
+    /// a typical length of its motion, however far away the whole stands: its distance from the
+    /// origin, or extents of what moves
     pub(crate) extent: f64,
     /// distance over which constraints are spread: an arm for comparing torques with forces
     pub span: f64,

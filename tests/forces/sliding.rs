@@ -10,6 +10,16 @@ const METHODS: [&str; 6] = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"]
 
 /// Masses that slide along z of ground, `speeds` at first, with forces between markers 1 (ground), 2 and 3.
 fn blocks(masses: &[f64], speeds: &[f64], forces: &str, method: &str) -> Session {
+    blocks_within(masses, speeds, forces, (method, 1e-7))
+}
+
+/// The same at another request.
+fn blocks_within(
+    masses: &[f64],
+    speeds: &[f64],
+    forces: &str,
+    (method, request): (&str, f64),
+) -> Session {
     let mut text = String::new();
     for (k, (m, v)) in (2..).zip(masses.iter().zip(speeds)) {
         text += &format!(
@@ -20,7 +30,7 @@ fn blocks(masses: &[f64], speeds: &[f64], forces: &str, method: &str) -> Session
         &(text + forces),
         &["DZ(2,1)", "VZ(2,1)", "DZ(3,1)", "VZ(3,1)"][..2 * masses.len()],
         method,
-        1e-7,
+        request,
     )
 }
 
@@ -260,5 +270,40 @@ fn a_damped_relay_of_a_displacement_ends_by_name() {
     ] {
         let (status, code, _) = relay(force, "AUTO", 1e-4);
         assert_eq!(status, Status::Completed, "{force}: {code}");
+    }
+}
+
+/// A mass on a spring that a belt carries until the spring is stronger than a steep friction, then swings; beside it another swings
+/// all the time. Newton's iteration is judged by the worst unknown, and the second hid that the first could stick no longer.
+#[test]
+fn a_mass_lets_go_of_its_belt_whatever_else_swings() {
+    const BELT: f64 = 0.3;
+    const STEEP: f64 = 1e-6;
+    // friction of 1 and a spring of 1 on a mass of 1
+    let exact = |t: f64| {
+        let free = t - 1.0 / BELT;
+        let sticks = free < 0.0;
+        if sticks {
+            BELT * t
+        } else {
+            1.0 + BELT * free.sin()
+        }
+    };
+    for (width, turning) in [(1.0, 3.0), (10.0, 0.3), (10.0, 3.0)] {
+        let forces = format!(
+            "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=-DZ(2,1)+TANH(({BELT}-VZ(2,1))/{STEEP:e})\n\
+             SFORCE/2, TRANSLATION, ACTIONONLY, I=3, J=1, FUNCTION=-{:?}*DZ(3,1)\n",
+            turning * turning
+        );
+        for method in ["RADAU5", "BDF", "HHT", "NEWMARK"] {
+            for request in [1e-2, 1e-3] {
+                let speeds = [BELT, width * turning];
+                let mut s = blocks_within(&[1.0, 1.0], &speeds, &forces, (method, request));
+                go(&mut s, Analysis::Dynamic, 6.0, 60);
+                let off = running::off(&s, "DZ(2,1)", exact);
+                let what = format!("{method} {request:e} beside {width} at {turning}");
+                assert!(off < 3.0 * request, "{what}: {off:e}");
+            }
+        }
     }
 }

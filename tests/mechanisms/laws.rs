@@ -389,3 +389,59 @@ fn momentum_is_kept_by_what_nothing_holds() {
         assert!(x.iter().all(|y| (y - x[0]).abs() < 1e-9), "{c}: {x:?}");
     }
 }
+
+/// A four-bar of pins in the plane with all its places moved by `by`; one pin has a gap, and a spring pulls.
+fn four_bar_at(by: [f64; 3], gap: f64) -> String {
+    let [x, y, z] = by;
+    let on_ground = |a: f64, b: f64| format!("QP={:?},{:?},{z:?}", x + a, y + b);
+    let bar = |part: usize, [a, b]: [[f64; 2]; 2], gap: f64| {
+        format!(
+            "PART/{part}, MASS=1, CM={part}0, IP=0.1,0.1,0.1, QG={x:?},{y:?},{z:?}\nMARKER/{part}0, PART={part}, QP={:?},{:?},0\n\
+             MARKER/{part}1, PART={part}, QP={:?},{:?},0\nMARKER/{part}2, PART={part}, QP={:?},{:?},0\n",
+            (a[0] + b[0]) / 2.0,
+            (a[1] + b[1]) / 2.0,
+            a[0],
+            a[1],
+            b[0] + gap,
+            b[1] - gap / 2.0,
+        )
+    };
+    let corners = [[0.0, 0.0], [0.3, 1.1], [2.2, 1.9], [3.0, 0.0]];
+    let bars = bar(2, [corners[0], corners[1]], 0.0)
+        + &bar(3, [corners[1], corners[2]], gap)
+        + &bar(4, [corners[2], corners[3]], 0.0);
+    format!(
+        "MOVED\nPART/1, GROUND\nMARKER/1, PART=1, {}\nMARKER/5, PART=1, {}\nMARKER/6, PART=1, {}\n{bars}\
+         JOINT/1, REVOLUTE, I=21, J=1\nJOINT/2, REVOLUTE, I=31, J=22\nJOINT/3, REVOLUTE, I=41, J=32\nJOINT/4, REVOLUTE, I=42, J=5\n\
+         SPRINGDAMPER/1, TRANSLATION, I=30, J=6, K=20, L=1\nACCGRAV/JGRAV=-9.81\nEND\n",
+        on_ground(0.0, 0.0),
+        on_ground(3.0, 0.0),
+        on_ground(1.0, 4.0),
+    )
+}
+
+/// How far the mechanism is from the origin says nothing about it: neither what assembly does, nor what is told of it.
+#[test]
+fn moving_a_whole_model_changes_neither_its_assembly_nor_what_is_told() {
+    let columns = ["DX(30,1)", "DY(30,1)", "AZ(30,1)"];
+    for gap in [0.0, 1e-6, 1e-4, 1e-3, 2e-2] {
+        let go_at = |by: [f64; 3]| {
+            let options = running::options(&columns, 1e-8);
+            let mut s = begin(whole(&four_bar_at(by, gap)), "moved", options);
+            go(&mut s, Analysis::Dynamic, 0.5, 10);
+            let told = s.run.record.warned();
+            (columns.map(|c| running::values(&s, c).to_vec()), told)
+        };
+        let (here, told) = go_at([0.0; 3]);
+        assert_eq!(told.is_empty(), gap < 1e-5, "{gap}: {told:?}");
+        for by in [[1.0, -2.0, 0.0], [1e3, 0.0, -2e3], [-1e6, 1e6, 3e5]] {
+            let (there, told_there) = go_at(by);
+            assert_eq!(told, told_there, "{gap} {by:?}");
+            // rows are closed to 1e-10 of the distance from the origin
+            let closed = 1e-6 + 1e-10 * by.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            for (a, b) in here.iter().flatten().zip(there.iter().flatten()) {
+                assert!((a - b).abs() < closed, "{gap} {by:?}: {a:?} {b:?}");
+            }
+        }
+    }
+}

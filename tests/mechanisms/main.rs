@@ -16,6 +16,7 @@ mod elements;
 mod initial;
 mod instances;
 mod joints;
+mod kinds_of_loops;
 mod large;
 mod laws;
 mod leaps;

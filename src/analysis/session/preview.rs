@@ -64,7 +64,7 @@ impl Session {
         self.check_method()?;
         self.check_settings()?;
         let (system, assembly, analysis) = self.begin(analysis, &mut Unwatched)?;
-        let (told, length) = (assembly.warnings.iter(), system.scene.length);
+        let (told, length) = (assembly.warnings.iter(), system.scene.size);
         for warning in told.filter(|w| !is_rounding(w, length)) {
             self.warn(warning.clone());
         }

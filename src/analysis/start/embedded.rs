@@ -12,7 +12,7 @@ const DEEP: f64 = 0.02;
 pub fn contacts(scene: Configured<'_>, numbers: &[f64]) -> Vec<AssemblyWarning> {
     let at = Equations::new(scene, numbers);
     let deep = scene.forces.iter().filter_map(|force| {
-        let depth = force.depth(&at).filter(|d| *d > DEEP * scene.length)?;
+        let depth = force.depth(&at).filter(|d| *d > DEEP * scene.size)?;
         Some(AssemblyWarning::Embedded {
             element: force.id,
             depth,

@@ -387,7 +387,7 @@ pub fn unmet(
     let at = Equations::new(scene, &numbers);
     let told = conditions.iter().filter_map(|condition| {
         let found = condition.quantity(&scene, &at);
-        let unit = if condition.angle { 1.0 } else { scene.length };
+        let unit = if condition.angle { 1.0 } else { scene.size };
         let off = condition.residual(found);
         (off.abs() > MET_TOLERANCE * unit).then_some(ConditionWarning::Unmet {
             element: condition.element,
@@ -409,7 +409,7 @@ pub fn unmet(
                 continue;
             };
             let off = (path.at::<f64>(reached[k], 0) - path.at(given, 0)).norm();
-            if off > MET_TOLERANCE * scene.length {
+            if off > MET_TOLERANCE * scene.size {
                 told.push(ConditionWarning::UnmetContact {
                     element: cam.id,
                     argument: names[k],

@@ -28,7 +28,7 @@ pub fn of_parts(
     let at = Equations::new(scene, numbers);
     let left: BTreeMap<ElementId, &MarkerState<f64>> =
         left.iter().map(|(id, s)| (*id, s)).collect();
-    let length = scene.length.max(f64::MIN_POSITIVE);
+    let length = scene.size.max(f64::MIN_POSITIVE);
     let (mut place, mut rate) = ((TOLD_PLACE, None), (0.0, None));
     let mut fastest: f64 = 0.0;
     for (k, part) in scene.parts.iter().enumerate() {

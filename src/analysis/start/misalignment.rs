@@ -60,7 +60,7 @@ fn ties_apart(scene: &Scene, model: &Model) -> Vec<AssemblyWarning> {
         let missing = branch::of_tie(tie.rows(), &I, &J, 0).unwrap_or_default();
         let turn = (missing.iter()).fold(Vec3::zero(), |sum, (axis, by)| sum - axis.times(*by));
         let axes = [(j, J.rotation), (i, I.rotation)];
-        let offset = (offset.norm() > WORTH_TELLING * scene.length)
+        let offset = (offset.norm() > WORTH_TELLING * scene.size)
             .then(|| (offset.norm(), Axis::along(offset, &axes)));
         let turn = (turn.norm() > WORTH_TELLING).then(|| (turn.norm(), Axis::along(turn, &axes)));
         if offset.is_some() || turn.is_some() {
@@ -90,7 +90,7 @@ pub fn orders(scene: &Scene, model: &Model) -> Vec<ConditionWarning> {
         let element = ElementKind::Joint.id(id);
         let frame = |id: u32| scene.marker_of.get(&id).map(|&m| scene.drawn(m));
         let kinds = [
-            (Law::Along(2), joint.ic_translation, scene.length),
+            (Law::Along(2), joint.ic_translation, scene.size),
             (Law::Angle, joint.ic_rotation, 1.0),
         ];
         for (law, given, size) in kinds {

@@ -137,7 +137,7 @@ impl<'s> Surroundings<'s> {
                 let one = if scene.drives_an_angle(m) {
                     1.0
                 } else {
-                    scene.length
+                    scene.size
                 };
                 let by = step * one * draw.next();
                 if drives { value + by } else { *value }

@@ -230,7 +230,7 @@ impl Distance {
             let (at, angular) = own?;
             slopes[(residual.len(), place)] = 1.0;
             residual.push(q[at] - value);
-            weight.push(FIRM_WEIGHT / if angular { 1.0 } else { scene.length });
+            weight.push(FIRM_WEIGHT / if angular { 1.0 } else { scene.size });
         }
         // joints that carry nothing
         let numbers = assemble::numbers(scene, t, q, &vec![0.0; n], x);
@@ -241,7 +241,7 @@ impl Distance {
                 slopes[(residual.len(), v)] += slope;
             }
             residual.push(row.value);
-            weight.push(FIRM_WEIGHT / if law.is_length() { scene.length } else { 1.0 });
+            weight.push(FIRM_WEIGHT / if law.is_length() { scene.size } else { 1.0 });
         }
         // weights
         let mut residual = DVector::from_vec(residual);
@@ -266,7 +266,7 @@ fn part_distances(
         let firm = |exact: bool| if exact { FIRM_WEIGHT } else { 1.0 };
         let off = now.p_GM - part.initial.position;
         for (exact, off) in exact.into_iter().zip(off.0) {
-            weight.push(firm(exact) / scene.length);
+            weight.push(firm(exact) / scene.size);
             residual.push(off);
         }
         let turned = log(&(now.R_GM * part.initial.rotation.transpose()));
