@@ -331,14 +331,26 @@ impl Overview {
             };
             self.rows.table.clone_from(&run.table);
         }
-        for row in self.seen.max(run.released)..run.rows() {
-            if !row.is_multiple_of(self.stride) {
-                continue;
+        let mut row = self.seen.max(run.released);
+        loop {
+            // column by column, as many rows as there is room for
+            row = row.next_multiple_of(self.stride);
+            let room = MOST_OF_OVERVIEW - self.rows.rows();
+            let n = run
+                .rows()
+                .saturating_sub(row)
+                .div_ceil(self.stride)
+                .min(room);
+            if n == 0 {
+                break;
             }
             let place = row - run.released;
-            let values: Vec<f64> = run.columns.iter().map(|c| c.values[place]).collect();
-            self.rows.push(&values);
-            if self.rows.rows() >= MOST_OF_OVERVIEW {
+            for (own, column) in self.rows.columns.iter_mut().zip(&run.columns) {
+                let values = column.values[place..].iter().step_by(self.stride);
+                own.values.extend(values.take(n));
+            }
+            row += n * self.stride;
+            if n == room {
                 self.rows.keep_every_second();
                 self.stride *= 2;
             }

@@ -238,6 +238,19 @@ impl Run {
                 .push(row.get(index).copied().unwrap_or(f64::NAN));
         }
     }
+    /// Adds rows of equal width that stand one behind the other, each as [`Run::push`] does.
+    pub(crate) fn push_block(&mut self, block: &[f64], width: usize) {
+        let n_rows = block.len() / width;
+        for (column, index) in self.columns.iter_mut().zip(0..) {
+            if index < width {
+                let values = block.iter().skip(index).step_by(width);
+                column.values.extend(values);
+            } else {
+                let all = column.values.len() + n_rows;
+                column.values.resize(all, f64::NAN);
+            }
+        }
+    }
     /// Makes room for further rows.
     pub(crate) fn reserve(&mut self, n_rows: usize) {
         for column in &mut self.columns {

@@ -481,6 +481,10 @@ pub fn append(run: &mut Run, program: &Program, rows: &[Vec<f64>]) {
     append_means(run, program, rows, |_| None);
 }
 
+/// Rows that are evaluated before they go to their columns: of each column a line of the cache or
+/// more, and all of them together fit the caches.
+const ROWS_OF_BLOCK: usize = 32;
+
 /// Appends the columns as [`append`] does; `branches`: the numbers on the branches between which
 /// the motion stays at the row of an index, and the part of each in the mean that is what happens.
 pub fn append_means<'a>(
@@ -490,12 +494,16 @@ pub fn append_means<'a>(
     branches: impl Fn(usize) -> Option<&'a Vec<(f64, Vec<f64>)>>,
 ) {
     let mut work = Work::default();
-    let mut values = vec![0.0; program.n_outputs() + 1];
-    let (mut mean, mut other) = (values[1..].to_vec(), values[1..].to_vec());
+    let width = program.n_outputs() + 1;
+    let (mut mean, mut other) = (vec![0.0; width - 1], vec![0.0; width - 1]);
     let mut changes = vec![false; other.len()];
+    // rows that go to their columns together
+    let mut block = vec![0.0; width * rows.len().min(ROWS_OF_BLOCK)];
+    let mut n_rows = 0;
     program.expect_runs(rows.len());
     run.reserve(rows.len());
     for (k, row) in rows.iter().enumerate() {
+        let values = &mut block[n_rows * width..][..width];
         values[0] = row[Layout::TIME];
         program.run(row, &mut work, &mut values[1..]);
         if let Some(branches) = branches(k) {
@@ -518,7 +526,11 @@ pub fn append_means<'a>(
         }
         // a zero has no sign that would mean something
         values.iter_mut().for_each(|value| *value += 0.0);
-        run.push(&values);
+        n_rows += 1;
+        if n_rows == ROWS_OF_BLOCK || k + 1 == rows.len() {
+            run.push_block(&block[..n_rows * width], width);
+            n_rows = 0;
+        }
     }
 }
 

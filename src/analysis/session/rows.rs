@@ -74,8 +74,12 @@ impl Gaps {
         let seen = self.has_value.iter_mut().zip(&mut self.first);
         for (column, (has_value, first)) in run.columns.iter().zip(seen) {
             let new = &column.values[from..];
-            let gap = new.iter().position(|x| !x.is_finite());
-            *first = first.or(gap.map(|gap| time[from + gap]));
+            // without a way out of the loop, so that it takes several numbers at once
+            let has_gap = new.iter().fold(false, |any, x| any | !x.is_finite());
+            if has_gap {
+                let gap = new.iter().position(|x| !x.is_finite());
+                *first = first.or(gap.map(|gap| time[from + gap]));
+            }
             *has_value |= new.iter().any(|x| x.is_finite());
         }
     }

@@ -15,20 +15,20 @@ use crate::analysis::time::continuation::Continuation;
 use crate::analysis::time::counting::Counting;
 use crate::analysis::trajectory::EnergyFlow;
 use crate::clock::Moment;
-use crate::numeric::quadrature::GAUSS_3;
+use crate::numeric::quadrature::GAUSS_KRONROD_15;
 use crate::numeric::{Method, Step};
 
 /// Looks at the balance during a simulation, at most about.
 const LOOKS: f64 = 200.0;
 /// Turn of a driven mechanism, rad, and part of the duration, in which works are integrated at
 /// once.
-const PIECE: [f64; 2] = [1.0, 1.0 / 64.0];
+const PIECE: [f64; 2] = [1.0, 1.0 / 32.0];
 /// Pieces of a step, at most.
 const MAX_PIECES: f64 = 1e5;
-/// Change of a work by halving an interval, as a part of the work, that is the error permitted.
+/// Difference of two rules for a work, as a part of the work, that is the error permitted.
 const WORK_TOLERANCE: f64 = 1e-9;
 /// Halvings of an interval, at most: a force may jump within it.
-const MAX_HALVED: usize = 12;
+const MAX_HALVED: usize = 10;
 
 /// Begins the account at a state, unless it has begun.
 pub(super) fn begin(flow: &mut EnergyFlow, system: &mut System, t: f64, y: &[f64]) {
@@ -136,41 +136,46 @@ struct Piece {
     error: f64,
 }
 
-/// Integrates powers by Gauss' rule over ever shorter intervals, until halving one changes little
-/// beside its own work and what is `known` of all before.
+/// Integrates powers by the rules of Gauss and Kronrod over ever shorter intervals, until the two
+/// differ little beside the work there and what is `known` of all before.
 fn adaptive(power: &mut impl FnMut(f64) -> [f64; 3], ends: [f64; 2], known: f64) -> Piece {
     let mut sum = Piece {
         works: [0.0; 3],
         error: 0.0,
     };
-    // intervals that are left, each with its works by the rule and how often it was halved
-    let mut left = vec![(ends, gauss(power, ends), 0)];
-    while let Some(([a, b], whole, halved)) = left.pop() {
-        let middle = 0.5 * (a + b);
-        let halves = [[a, middle], [middle, b]].map(|ends| (ends, gauss(power, ends)));
-        let fine: [f64; 3] = std::array::from_fn(|k| halves[0].1[k] + halves[1].1[k]);
-        let off: f64 = fine.iter().zip(whole).map(|(f, w)| (f - w).abs()).sum();
-        let size: f64 = fine.iter().map(|f| f.abs()).sum();
-        if off > WORK_TOLERANCE * (size + known) && halved < MAX_HALVED {
-            left.extend(halves.map(|(ends, works)| (ends, works, halved + 1)));
+    // intervals that are left, and how often each was halved
+    let mut left = vec![(ends, 0)];
+    while let Some(([a, b], halved)) = left.pop() {
+        let Piece { works, error } = by_rules(power, [a, b]);
+        let size: f64 = works.iter().map(|w| w.abs()).sum();
+        if error > WORK_TOLERANCE * (size + known) && halved < MAX_HALVED {
+            let middle = 0.5 * (a + b);
+            left.extend([[a, middle], [middle, b]].map(|ends| (ends, halved + 1)));
             continue;
         }
-        sum.works.iter_mut().zip(fine).for_each(|(s, f)| *s += f);
-        sum.error += off;
+        sum.works.iter_mut().zip(works).for_each(|(s, w)| *s += w);
+        sum.error += error;
     }
     sum
 }
 
-/// Integrates powers over an interval by Gauss' rule of three nodes.
-fn gauss(power: &mut impl FnMut(f64) -> [f64; 3], [a, b]: [f64; 2]) -> [f64; 3] {
-    let mut works = [0.0; 3];
-    for (place, weight) in GAUSS_3 {
-        let powers = power(a + place * (b - a));
-        for (work, power) in works.iter_mut().zip(powers) {
-            *work += weight * (b - a) * power;
+/// Integrates powers over an interval by Kronrod's rule; the error is how far Gauss' is off it.
+fn by_rules(power: &mut impl FnMut(f64) -> [f64; 3], [a, b]: [f64; 2]) -> Piece {
+    let (middle, length) = (0.5 * (a + b), b - a);
+    let [mut works, mut fewer] = [[0.0; 3]; 2];
+    for (half, kronrod, gauss) in GAUSS_KRONROD_15 {
+        let mut powers = power(middle - half * length);
+        if half > 0.0 {
+            let other = power(middle + half * length);
+            powers.iter_mut().zip(other).for_each(|(p, o)| *p += o);
+        }
+        for ((work, less), power) in works.iter_mut().zip(&mut fewer).zip(powers) {
+            *work += kronrod * length * power;
+            *less += gauss * length * power;
         }
     }
-    works
+    let error = works.iter().zip(fewer).map(|(w, f)| (w - f).abs()).sum();
+    Piece { works, error }
 }
 
 /// The account of a leg: scratch, and when the balance is looked at next.
