@@ -11,8 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Programs and counts that a tape keeps, at most.
 pub(super) const MOST_ENDS: usize = 256;
-/// Questions that a tape keeps, at most; a recording that asks more is made anew. A question takes
-/// 24 bytes.
+/// Questions that a tape keeps, at most; a recording that asks more is made anew.
 pub(super) const MOST_QUESTIONS: usize = 1 << 20;
 
 /// A question of a builder.
