@@ -1,4 +1,4 @@
-//! What a drawing shows over its mechanism: paths, directions, dimensions, forces and names.
+//! Overlays of a drawing: paths, directions, dimensions, forces and names above its mechanism.
 
 use super::{Layer, Mark, Names, Pen, Point, SymbolKind, shaded};
 use crate::report::mechanism::{Anchor, Pictured, Piece, Role, Trail, colours};
