@@ -2,6 +2,7 @@
 
 use crate::running;
 
+use cognate::model::Model;
 use cognate::results::Status;
 use running::{Analysis, GROUND, begin, options_by, try_to, values, whole};
 use std::fmt::Write;
@@ -93,4 +94,23 @@ fn rows_of_four_bars_move_as_one_does() {
         }
     }
     assert!(completed >= 8, "{completed}");
+}
+
+#[test]
+fn many_loops_that_turn_at_one_instant_are_passed_at_every_request() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/data/references/a02_nfourbar_10.adm"
+    );
+    let model = Model::read(file).expect("a model");
+    let reached = |request: f64| {
+        let mut s = begin(model.clone(), "row", options_by(&[], "AUTO", request));
+        let status = try_to(&mut s, Analysis::Dynamic, 10.0, 10);
+        (status, s.run.record.stop_reason.clone())
+    };
+    // the one at the end stopped at its eighth passage, 1e-7 s beside the instant
+    for request in [1e-4, 1e-6, 1e-8, 3e-10, 1.0206e-11] {
+        let (status, why) = reached(request);
+        assert_eq!(status, Status::Completed, "{request:e}: {why}");
+    }
 }

@@ -341,7 +341,8 @@ impl<'s> Search<'s> {
         // first without closing, which is cheap and near enough to see whether it is worth while
         let ends = [(0.0, sizes[0]), (1.0, sizes[1])];
         let rough = Valley::between(ends, |s| look(s, false).1);
-        let rough = rough.descended(1e-3, 1e-3, LARGEST_ROUGH_MINIMUM, |s| look(s, false).1);
+        let look_again = |s: f64| Some(look(s, false).1);
+        let rough = rough.descended(1e-3, 1e-3, LARGEST_ROUGH_MINIMUM, look_again);
         let mut best = (a.to_vec(), rough.least());
         if rough.least() > LARGEST_ROUGH_MINIMUM {
             return best;
@@ -360,7 +361,9 @@ impl<'s> Search<'s> {
             size
         };
         let valley = Valley::between(ends.map(|s| (s, closed(s))), &mut closed);
-        valley.descended(0.01 * DEPENDENT_THERE, 1e-12, DEPENDENT_THERE, closed);
+        valley.descended(0.01 * DEPENDENT_THERE, 1e-12, DEPENDENT_THERE, |s| {
+            Some(closed(s))
+        });
         best
     }
 

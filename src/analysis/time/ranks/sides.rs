@@ -52,6 +52,9 @@ const MAX_MEETINGS: usize = 100;
 const BEHIND: f64 = 0.01;
 /// Width of the interval in which a hidden meeting is left, over that in which it is looked for.
 const NEXT_TO_EACH_OTHER: f64 = 1e-12;
+/// Least of what rows determine beyond each other there, at most: beside the meeting of many loops
+/// states are known to the square root of [`GAP`] each, if they are found at all.
+const HARDLY_KNOWN: f64 = 10.0 * DEPENDENT_THERE;
 /// Width of the interval that is left of the search, over the one in which branches that meet
 /// would be as far from dependence as its ends, below which they pass each other.
 const PASSED_BY: f64 = 0.05;
@@ -291,12 +294,12 @@ impl Sides {
         let valley = Valley::of(points);
         let near = NEXT_TO_EACH_OTHER * (points[2].0 - points[0].0);
         let valley = valley.descended(DEPENDENT_THERE, near, NEAR_BOTH, |t| {
-            let found = self.state_between(system, ends, t);
-            found.map_or(1.0, |(_, side)| self.margin(loops, &side))
+            let (_, side) = self.state_between(system, ends, t)?;
+            Some(self.margin(loops, &side))
         });
         let (t, least) = valley.lowest();
         let (node, _) = self.state_between(system, ends, t)?;
-        (least <= DEPENDENT_THERE).then_some(node)
+        (least <= HARDLY_KNOWN).then_some(node)
     }
 
     /// Returns how far the rows of some loops are from one state to another, each row over its

@@ -8,6 +8,9 @@ const MOST_LOOKS: usize = 60;
 /// most.
 const STEEPER: f64 = 6.0;
 
+/// Parts of the way from the middle place to one that has no value, at which others are tried.
+const SHORT_OF_IT: [f64; 2] = [0.9, 0.5];
+
 /// Three places on a way, and the values there of a function that is nowhere negative. Once a
 /// minimum is enclosed the function is least at the middle one.
 #[derive(Clone, Copy)]
@@ -74,13 +77,14 @@ impl Valley {
     }
 
     /// Looks at further places until the function is no more than `enough`, the outer places are
-    /// `near` each other, or nothing between them can be as small as `hopeless`.
+    /// `near` each other, nothing between them can be as small as `hopeless`, or the function has
+    /// no value at a place nor short of it.
     pub fn descended(
         mut self,
         enough: f64,
         near: f64,
         hopeless: f64,
-        mut f: impl FnMut(f64) -> f64,
+        mut f: impl FnMut(f64) -> Option<f64>,
     ) -> Self {
         let width = |points: &[(f64, f64); 3]| points[2].0 - points[0].0;
         let mut by_halves = false;
@@ -92,7 +96,13 @@ impl Valley {
             let before = width(&self.points);
             let next = self.root().filter(|_| !by_halves);
             let next = next.unwrap_or_else(|| self.aside());
-            self.take((next, f(next)));
+            let middle = self.points[1].0;
+            let short = SHORT_OF_IT.map(|part| middle + part * (next - middle));
+            let mut places = std::iter::once(next).chain(short);
+            let Some(new) = places.find_map(|place| Some((place, f(place)?))) else {
+                break;
+            };
+            self.take(new);
             // a root that leaves most of the way on one side is followed by a place on that side
             by_halves = !by_halves && width(&self.points) > 0.5 * before;
         }
@@ -165,7 +175,7 @@ mod tests {
         };
         let ends = [0.0, 1.0].map(|s| (s, f(s)));
         let valley = Valley::between(ends, &mut f);
-        let valley = valley.descended(1e-8, 1e-12, 1e-6, &mut f);
+        let valley = valley.descended(1e-8, 1e-12, 1e-6, |s| Some(f(s)));
         (valley.least(), looks)
     }
 
@@ -182,6 +192,19 @@ mod tests {
             let missed = |s: f64| bent(s).hypot(1e-3);
             let (size, looks) = least(missed);
             assert!(size > 9e-4 && looks < 30, "{at}: {size:e} after {looks}");
+        }
+    }
+
+    #[test]
+    fn a_pass_beside_which_the_function_has_no_value_is_approached_up_to_there() {
+        for k in 1..200 {
+            let at = f64::from(k) / 200.0 + 1e-4;
+            let value = |s: f64| ((s - at).abs() > 1e-6).then_some(3.0 * (s - at).abs());
+            let ends = [0.0, 1.0].map(|s| (s, 3.0 * (s - at).abs()));
+            let middle = (0.5, 3.0 * (0.5 - at).abs());
+            let valley = Valley::of([ends[0], middle, ends[1]]);
+            let least = valley.descended(1e-8, 1e-12, 0.1, value).least();
+            assert!(least < 3e-5, "{at}: {least:e}");
         }
     }
 
