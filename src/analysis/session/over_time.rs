@@ -307,3 +307,32 @@ fn methods(trajectory: &Trajectory) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn methods_are_told_with_the_first_change_and_the_number_of_others() {
+        let told = |n: usize| {
+            let mut trajectory = Trajectory::default();
+            let all = [
+                (0.0, "DOP853", Takeover::Begins),
+                (0.3, "RADAU5", Takeover::Stiff),
+                (0.5, "DOP853", Takeover::Eased),
+                (0.7, "RADAU5", Takeover::Slides),
+                (0.9, "DOP853", Takeover::Eased),
+            ];
+            for (t, name, why) in all.into_iter().take(n) {
+                trajectory.begin_method(t, name, why);
+            }
+            methods(&trajectory)
+        };
+        let changed = "DOP853, then RADAU5 from 0.3, where steps were limited by stiffness";
+        assert_eq!(told(0), "");
+        assert_eq!(told(1), "DOP853");
+        assert_eq!(told(2), changed);
+        assert_eq!(told(3), format!("{changed}, then DOP853 from 0.5"));
+        assert_eq!(told(5), format!("{changed}, then 3 more changes until 0.9"));
+    }
+}

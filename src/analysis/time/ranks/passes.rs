@@ -17,7 +17,7 @@ use crate::scene::configuration::Configured;
 use crate::scene::equations::row_name;
 use crate::scene::layout::Layout;
 use crate::scene::mover::Mover;
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 
 /// Smallest part of a row outside the others, relative to its length, at a located position that
 /// still counts as dependent: positions are located to the square root of rounding.
@@ -153,8 +153,10 @@ struct Search<'s> {
     /// values of all rows   (n_rows)
     values: &'s Program,
     work: RefCell<Work>,
-    /// recorded projections onto these rows, where there are any that change positions alone
-    projections: Option<RefCell<System>>,
+    /// whose recorded projections go onto these rows and change positions alone, if they do
+    projects: Option<&'s System>,
+    /// a copy of it to work with, made where a state is to be closed
+    copy: OnceCell<RefCell<System>>,
 }
 
 impl<'s> Search<'s> {
@@ -179,9 +181,10 @@ impl<'s> Search<'s> {
             usual,
             values: system.row_values(),
             work: RefCell::default(),
-            projections: (scene.configuration.active == system.configuration.active
+            projects: (scene.configuration.active == system.configuration.active
                 && system.projects_positions_alone())
-            .then(|| RefCell::new(system.clone())),
+            .then_some(system),
+            copy: OnceCell::new(),
         })
     }
 
@@ -266,8 +269,9 @@ impl<'s> Search<'s> {
     fn close(&self, numbers: &mut [f64]) {
         let (scene, l) = (self.scene, self.scene.layout);
         let t = numbers[Layout::TIME];
-        if let Some(system) = &self.projections {
-            let mut system = system.borrow_mut();
+        if let Some(original) = self.projects {
+            let copy = self.copy.get_or_init(|| RefCell::new(original.clone()));
+            let mut system = copy.borrow_mut();
             let mut y = numbers[l.y()].to_vec();
             system.project_anew();
             if system.put_on_rows(t, &mut y).is_ok() {
