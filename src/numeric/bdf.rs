@@ -211,11 +211,8 @@ impl Bdf {
             self.controlled[i] * self.next.ydot[i] / way.abs().max(typical[i])
         }));
         let guess = self.permitted.now().sqrt() * if speed > 1e-8 { 0.1 / speed } else { 1e-3 };
-        let h = self
-            .options
-            .h_initial
-            .unwrap_or(guess)
-            .min(self.options.h_max);
+        let h = self.options.h_initial.unwrap_or(guess);
+        let h = control::first_length(t, h, &self.options);
         let past = &mut self.past;
         (past.t, past.h, past.k, past.h_used, past.k_used) = (t, h, 1, 0.0, 0);
         (past.constant, past.steps, past.wait, past.rising) = (0, 0, 0, true);

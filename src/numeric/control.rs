@@ -469,7 +469,7 @@ impl Starter<'_> {
         mut rate: impl FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
     ) -> f64 {
         if let Some(h) = self.options.h_initial {
-            return h.min(self.options.h_max);
+            return first_length(t, h, self.options);
         }
         let typical = self.weights.typical();
         let origin = self.weights.origin();
@@ -504,13 +504,13 @@ impl Starter<'_> {
                 probe *= 1e-2;
                 continue;
             }
-            return h.min(self.options.h_max);
+            return first_length(t, h, self.options);
         }
     }
 }
 
-/// Names the unknown that changes fastest, as the reason to stop where the very first proposal is
-/// shorter than the shortest step: it grows without bound.
+/// Names the unknown that changes fastest, as the reason to stop where the first proposal after an
+/// accepted step is shorter than the shortest step: it grows without bound.
 pub fn too_fast(rate: &[f64], weights: &Weights) -> Reason {
     let speeds = rate.iter().zip(weights.magnitude()).map(|(f, m)| f / m);
     Reason::ErrorTest(worst_index(speeds))
@@ -519,6 +519,12 @@ pub fn too_fast(rate: &[f64], weights: &Weights) -> Reason {
 /// Returns the shortest sensible step at `t`, in s: time must change in double precision.
 fn shortest(t: f64, options: &Options) -> f64 {
     options.h_min.max(16.0 * f64::EPSILON * t.abs()).max(1e-200)
+}
+
+/// Returns the length of a first step whose guess is `guess`, in s: no longer than permitted, and
+/// no shorter than the shortest step. A guess is no proof that nothing longer succeeds.
+pub fn first_length(t: f64, guess: f64, options: &Options) -> f64 {
+    guess.max(shortest(t, options)).min(options.h_max)
 }
 
 /// Fits a step to the limit: never beyond, and never leaving a remnant that is much shorter than

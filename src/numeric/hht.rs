@@ -185,11 +185,8 @@ impl Hht {
         }));
         let guess = self.permitted.now().sqrt() * if speed > 1e-8 { 0.1 / speed } else { 1e-3 };
         (now.t, now.h_used) = (t, 0.0);
-        now.h = self
-            .options
-            .h_initial
-            .unwrap_or(guess)
-            .min(self.options.h_max);
+        let h = self.options.h_initial.unwrap_or(guess);
+        now.h = control::first_length(t, h, &self.options);
         Ok(())
     }
 

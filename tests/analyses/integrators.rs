@@ -621,6 +621,48 @@ fn a_pole_stops_with_an_underflow_of_the_step() {
 }
 
 #[test]
+fn a_guess_of_the_first_step_that_is_too_short_is_no_reason_to_stop() {
+    struct Relaxation;
+    impl Field for Relaxation {
+        fn size(&self) -> usize {
+            1
+        }
+        fn rate<S: cognate::scalar::Scalar>(&self, t: S, y: &[S], ydot: &mut [S]) {
+            ydot[0] = (t.cos() - y[0]).scale(1e18);
+        }
+    }
+    struct Pole;
+    impl Field for Pole {
+        fn size(&self) -> usize {
+            1
+        }
+        fn rate<S: cognate::scalar::Scalar>(&self, _t: S, y: &[S], ydot: &mut [S]) {
+            ydot[0] = y[0].square();
+        }
+    }
+    let options = Options {
+        h_min: 1e-12,
+        ..options(1e-4)
+    };
+    // a million time constants lie in the shortest step, which an implicit method takes
+    let mut problem = System::new(Relaxation);
+    let mut method = ode_method("RADAU5", 1, &options).unwrap();
+    method.start(&mut problem, 0.0, &[0.0]).unwrap();
+    while method.t() < 1.0 {
+        method.step(&mut problem, 1.0).unwrap();
+    }
+    assert!((method.y()[0] - 1.0_f64.cos()).abs() < 1e-4);
+    // the whole way to the pole at 1e-15 lies in it
+    for row in METHODS.iter().filter(|row| row.form == Form::Ode) {
+        let mut problem = System::new(Pole);
+        let mut method = ode_method(row.name, 1, &options).unwrap();
+        method.start(&mut problem, 0.0, &[1e15]).unwrap();
+        let stop = method.step(&mut problem, 1.0).unwrap_err();
+        assert_eq!(stop.t, 0.0, "{}: {:?}", row.name, stop.reason);
+    }
+}
+
+#[test]
 fn undo_goes_back_and_a_limit_is_met_exactly() {
     let mut problem = System::new(Pendulum);
     let mut method = ode_method(METHODS[0].name, 2, &options(1e-8)).unwrap();
