@@ -133,7 +133,10 @@ impl Guard {
                 return;
             }
             let clock = Instant::now();
-            shared.run = Some(run.clone());
+            match &mut shared.run {
+                Some(kept) => kept.catch_up(run),
+                None => shared.run = Some(run.clone()),
+            }
             shared.copying += clock.elapsed();
             shared.is_stale = false;
         });

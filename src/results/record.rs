@@ -1,5 +1,6 @@
 //! The record of a run: how it ended, what it cost, and what the user should know.
 
+use super::run::catch_up;
 use super::{Kind, Seconds};
 use crate::diagnostic::{Diagnostic, Subject};
 
@@ -236,6 +237,57 @@ pub struct Record {
 }
 
 impl Record {
+    /// Becomes a later state of the record of the same run; only simulations since are copied.
+    pub(super) fn catch_up(&mut self, later: &Self) {
+        let Self {
+            status,
+            stop_code,
+            stop_reason,
+            model,
+            markers,
+            loads,
+            method,
+            error,
+            seconds,
+            repeated_seconds,
+            repeats,
+            counts,
+            freedom,
+            redundant,
+            rank_changes,
+            energy,
+            accuracy,
+            constraint_drift,
+            warnings,
+            doubts,
+            piecewise,
+            simulations,
+        } = later;
+        self.status.clone_from(status);
+        self.stop_code.clone_from(stop_code);
+        self.stop_reason.clone_from(stop_reason);
+        self.model.clone_from(model);
+        self.markers.clone_from(markers);
+        self.loads.clone_from(loads);
+        self.method.clone_from(method);
+        self.error.clone_from(error);
+        self.seconds.clone_from(seconds);
+        self.repeated_seconds.clone_from(repeated_seconds);
+        self.repeats.clone_from(repeats);
+        self.counts.clone_from(counts);
+        self.freedom.clone_from(freedom);
+        self.redundant.clone_from(redundant);
+        self.rank_changes.clone_from(rank_changes);
+        self.energy.clone_from(energy);
+        self.accuracy.clone_from(accuracy);
+        self.constraint_drift.clone_from(constraint_drift);
+        self.warnings.clone_from(warnings);
+        self.doubts.clone_from(doubts);
+        self.piecewise.clone_from(piecewise);
+        self.simulations.pop();
+        catch_up(&mut self.simulations, simulations);
+    }
+
     /// Returns the sentences of its warnings.
     pub fn warned(&self) -> Vec<String> {
         self.warnings.iter().map(Warning::sentence).collect()

@@ -167,6 +167,12 @@ pub struct Sequence {
     pub rows: Range<usize>,
 }
 
+/// Adds what a longer list has beyond one that is its beginning.
+pub(super) fn catch_up<T: Clone>(list: &mut Vec<T>, longer: &[T]) {
+    list.truncate(longer.len());
+    list.extend_from_slice(&longer[list.len()..]);
+}
+
 /// End of the name of a column of bars of error.
 const BAR: char = '±';
 
@@ -314,6 +320,45 @@ impl Run {
             }
         }
     }
+    /// Becomes a later state of the same run; what has been copied before is copied again only
+    /// where it is no longer the beginning.
+    pub(crate) fn catch_up(&mut self, later: &Run) {
+        if !self.begins(later) {
+            self.clone_from(later);
+            return;
+        }
+        for (own, more) in self.columns.iter_mut().zip(&later.columns) {
+            catch_up(&mut own.values, &more.values);
+        }
+        // the last one may have grown
+        self.sequences.pop();
+        catch_up(&mut self.sequences, &later.sequences);
+        catch_up(&mut self.log, &later.log);
+        self.record.catch_up(&later.record);
+    }
+    /// Returns whether a later state of the same run has the rows of this one as its first: no
+    /// rows were dropped or released, no columns added.
+    fn begins(&self, later: &Run) -> bool {
+        let counts = |run: &Run| {
+            let lists = [run.columns.len(), run.entities.len(), run.requests.len()];
+            (lists, run.table.len(), run.released, run.has_phases)
+        };
+        let held = self.columns.first().map_or(0, |c| c.values.len());
+        let last = |run: &Run| -> Option<Vec<u64>> {
+            let row = held.checked_sub(1)?;
+            let values = run.columns.iter().map(|c| c.values.get(row));
+            values.map(|x| Some(x?.to_bits())).collect()
+        };
+        let lists = [self.sequences.len(), self.log.len()];
+        let later_lists = [later.sequences.len(), later.log.len()];
+        held > 0
+            && counts(self) == counts(later)
+            && lists
+                .iter()
+                .zip(&later_lists)
+                .all(|(own, more)| own <= more)
+            && last(self).is_some_and(|own| Some(own) == last(later))
+    }
     /// Returns the number of rows, those that are no longer held included.
     pub fn rows(&self) -> usize {
         self.released + self.columns.first().map_or(0, |c| c.values.len())
@@ -425,6 +470,30 @@ mod tests {
                 ("dynamic_002", 3..6)
             ]
         );
+    }
+
+    #[test]
+    fn a_copy_that_catches_up_is_the_run() {
+        let mut run = Run::new("r", "t", Units::default());
+        run.add_column("x", "mm");
+        let mut copy = run.clone();
+        for k in 0..9 {
+            run.begin(Kind::Dynamic);
+            (0..k).for_each(|i| run.push(&[f64::from(i), if i == 2 { f64::NAN } else { 0.0 }]));
+            run.end();
+            let simulation = crate::results::Simulation::new(Kind::Dynamic, f64::from(k));
+            run.record.simulations.push(simulation);
+            run.record.counts.steps += 1;
+            run.log.push(Event::Command(format!("SIMULATE {k}")));
+            match k {
+                4 => run.keep_every_second(),
+                6 => run.release(),
+                7 => run.columns[1].values.fill(1.0),
+                _ => (),
+            }
+            copy.catch_up(&run);
+            assert_eq!(format!("{copy:?}"), format!("{run:?}"), "{k}");
+        }
     }
 
     #[test]
