@@ -31,7 +31,12 @@ fn system(name: &str) -> (System, Vec<f64>) {
         env!("CARGO_MANIFEST_DIR")
     );
     let text = std::fs::read_to_string(&file).expect("it is there");
-    let model = Model::from_text(&text).unwrap_or_else(|e| panic!("{e}"));
+    system_of(&text)
+}
+
+/// A dataset as an assembled system, and its state.
+fn system_of(text: &str) -> (System, Vec<f64>) {
+    let model = Model::from_text(text).unwrap_or_else(|e| panic!("{e}"));
     let options = build::Options {
         mode: 4,
         ..build::Options::default()
@@ -79,6 +84,70 @@ fn ask_otherwise(system: &mut System, (t, y): &(f64, Vec<f64>)) {
     let _ = Ode::jacobian(system, *t, y, &mut jacobian, &mut dfdt);
     let mut projected = y.clone();
     let _ = Ode::project(system, *t, &mut projected);
+}
+
+/// Free parts tied to their neighbours by bushings, so that most of the Jacobian is empty.
+fn tied(n: u32) -> String {
+    let mut text = "tied\nPART/1, GROUND\nMARKER/1, PART=1\n".to_string();
+    for k in 1..=n {
+        let (at, part) = (f64::from(k), 10 * k);
+        text += &format!(
+            "PART/{part}, QG={at},0.1,0, MASS=1.{k}, CM={part}, IP=0.1,0.2,0.3, WZ=0.4, VY=-0.2\n\
+             MARKER/{part}, PART={part}\nMARKER/{}, PART={part}, QP=-1,0,0\nBUSHING/{k}, I={}, J={}, K=90,70,50, \
+             KT=3,2,4, C=1,1,2, CT=0.1,0.2,0.3\n",
+            part + 1,
+            part + 1,
+            if k == 1 { 1 } else { part - 10 },
+        );
+    }
+    text + "ACCGRAV/JGRAV=-9.81\nEND\n"
+}
+
+/// A chain whose hinges rub: loads of each hinge are unknowns of one loop.
+fn rubbing(n: u32) -> String {
+    let mut text = "rubbing\nPART/1, GROUND\nMARKER/1, PART=1\n".to_string();
+    for k in 1..=n {
+        let (at, part) = (f64::from(k) - 1.0, 10 * k);
+        text += &format!(
+            "PART/{part}, QG={at},0,0, MASS=1, CM={}, IP=0.1,0.1,0.1, WZ={}\nMARKER/{part}, PART={part}\n\
+             MARKER/{}, PART={part}, QP=1,0,0\nMARKER/{}, PART={part}, QP=0.5,0,0\n\
+             JOINT/{k}, REVOLUTE, I={part}, J={}\n\
+             FRICTION/{k}, JOINT={k}, MU_STATIC=0.3, MU_DYNAMIC=0.2, PIN_RADIUS=0.05\n",
+            part + 2,
+            f64::from(k) * 0.7,
+            part + 1,
+            part + 2,
+            if k == 1 { 1 } else { part - 9 },
+        );
+    }
+    text + "ACCGRAV/JGRAV=-9.81\nEND\n"
+}
+
+#[test]
+fn derivatives_that_are_asked_for_often_keep_their_bits() {
+    for (text, is_sparse) in [(tied(24), true), (rubbing(5), false)] {
+        let (mut system, y) = system_of(&text);
+        let n = y.len();
+        let pattern = Ode::pattern(&mut system);
+        assert_eq!(pattern.is_some(), is_sparse);
+        for state in states(&y, &[0.3, -0.8, 0.5]) {
+            let mut first: Option<Vec<f64>> = None;
+            for asked in 0..9 {
+                let (mut entries, mut dfdt) = (vec![0.0; n * n], vec![0.0; n]);
+                match &pattern {
+                    Some(pattern) => {
+                        entries.truncate(pattern.n_entries());
+                        Ode::jacobian_entries(&mut system, state.0, &state.1, &mut entries)
+                    }
+                    None => Ode::jacobian(&mut system, state.0, &state.1, &mut entries, &mut dfdt),
+                }
+                .expect("the rates have derivatives");
+                entries.extend(dfdt);
+                let first = first.get_or_insert_with(|| entries.clone());
+                assert!(*first == entries, "asked {asked} times");
+            }
+        }
+    }
 }
 
 proptest! {

@@ -12,7 +12,8 @@
 
 use super::loop_factors::LoopFactors;
 use super::recording::Recording;
-use crate::expr::program::{Parted, Program, Work};
+use super::tangents::Tangents;
+use crate::expr::program::{LANES, Lane, Parted, Program, Work};
 use crate::numeric::pattern::Pattern;
 use crate::scalar::Dual;
 use crate::scene::configuration::Configured;
@@ -59,6 +60,12 @@ pub(in crate::analysis) struct AlgebraicLoops {
     follow_work: Work<Dual<WIDTH>>,
     dual_numbers: Vec<Dual<WIDTH>>,
     dual_out: Vec<Dual<WIDTH>>,
+    /// derivatives of the residual along numbers of the state
+    along_state: Tangents,
+    /// derivatives of `rest` along z
+    along_unknowns: Tangents,
+    /// derivatives of `row`, and of ρ, along many directions
+    lanes: [Vec<Lane>; 2],
     rho: Vec<f64>,
     trial: Vec<f64>,
     step: Vec<f64>,
@@ -147,6 +154,9 @@ impl AlgebraicLoops {
             follow_work: Work::default(),
             dual_numbers: Vec::new(),
             dual_out: vec![lift(0.0); n],
+            along_state: Tangents::default(),
+            along_unknowns: Tangents::default(),
+            lanes: [Vec::new(), vec![Lane::ZERO; n]],
             rho: vec![0.0; n],
             trial: vec![0.0; n],
             step: vec![0.0; n],
@@ -193,6 +203,13 @@ impl AlgebraicLoops {
             }
             return self.factors();
         }
+        if (self.along_unknowns)
+            .at(&self.row, &self.rest, |k| k < n)
+            .is_some()
+        {
+            self.entries_together();
+            return self.factors();
+        }
         self.dual_numbers.clear();
         self.dual_numbers.extend(self.row.iter().map(|&x| lift(x)));
         for some in self.pattern.groups().chunks(WIDTH) {
@@ -213,6 +230,29 @@ impl AlgebraicLoops {
             }
         }
         self.factors()
+    }
+
+    /// Computes the entries of ∂ρ/∂z by recorded derivatives, at the row that was seen.
+    fn entries_together(&mut self) {
+        let Some(tangent) = self.along_unknowns.here() else {
+            return;
+        };
+        let [row, rho] = &mut self.lanes;
+        row.resize(self.row.len(), Lane::ZERO);
+        for some in self.pattern.groups().chunks(LANES) {
+            for (k, group) in some.iter().enumerate() {
+                group.iter().for_each(|&place| row[place].set(k, 1.0));
+            }
+            tangent.along(row, rho);
+            for (k, group) in some.iter().enumerate() {
+                for &place in group {
+                    row[place].set(k, 0.0);
+                    for (entry, i) in self.pattern.column(place) {
+                        self.factors.entries[entry] = rho[i].get(k);
+                    }
+                }
+            }
+        }
     }
 
     fn factors(&mut self) -> Result<(), usize> {
@@ -404,6 +444,49 @@ impl AlgebraicLoops {
             }
         }
         Ok(())
+    }
+
+    /// Prepares to follow many directions at once from a row of numbers at which the loops are
+    /// solved; returns whether that is possible. `varies`: the numbers that directions may change.
+    ///
+    /// # Errors
+    /// The index of an unknown that nothing determines.
+    pub fn look_along(
+        &mut self,
+        numbers: &[f64],
+        varies: impl Fn(usize) -> bool,
+    ) -> Result<bool, usize> {
+        let recorded = self.along_state.at(numbers, &self.residual, varies);
+        if recorded.is_none() {
+            return Ok(false);
+        }
+        self.see(numbers);
+        self.factor(numbers)?;
+        Ok(true)
+    }
+
+    /// Does for the first `n` directions of a row of lanes what [`Self::follow`] does for duals,
+    /// where [`Self::look_along`] has looked.
+    pub fn follow_together(&mut self, lanes: &mut [Lane], n: usize) {
+        let Some(tangent) = self.along_state.here() else {
+            return;
+        };
+        let rho = &mut self.lanes[1];
+        tangent.along(lanes, rho);
+        for direction in 0..n {
+            for (s, rho) in self.step.iter_mut().zip(rho.iter()) {
+                *s = -rho.get(direction);
+            }
+            self.factors.solve(&mut self.step);
+            for (z, s) in lanes[self.places.clone()].iter_mut().zip(&self.step) {
+                z.set(direction, *s);
+            }
+        }
+    }
+
+    /// Returns where the unknowns stand in a row of numbers.
+    pub fn places(&self) -> Range<usize> {
+        self.places.clone()
     }
 
     /// Puts into the places of the unknowns along which directions they change: those along which

@@ -6,8 +6,10 @@
 //! direction together, eight directions at a time, and methods factor a sparse matrix.
 
 use super::System;
+use super::algebraic_loops::AlgebraicLoops;
 use super::recording::Recording;
-use crate::expr::program::{Program, Work};
+use super::tangents::Tangents;
+use crate::expr::program::{LANES, Lane, Program, Work};
 use crate::numeric::pattern::Pattern;
 use crate::numeric::sparse::DENSE_LIMIT;
 use crate::numeric::{Failure, Ode};
@@ -49,6 +51,11 @@ pub(super) struct Derivatives {
     work: Work<Dual<WIDTH>>,
     numbers: Vec<Dual<WIDTH>>,
     out: Vec<Dual<WIDTH>>,
+    /// those of the rate along many directions, and of the one with branches held
+    tangents: [Tangents; 2],
+    /// the numbers that are read, and their derivatives, and those of the rates
+    row: Vec<f64>,
+    lanes: [Vec<Lane>; 2],
 }
 
 /// Fails where an entry of a Jacobian of `n` rates has no value.
@@ -250,8 +257,25 @@ impl System {
         } else {
             &self.numbers[..]
         };
+        own.row.clear();
+        own.row.extend_from_slice(numbers);
+        match self.look_along(&mut own) {
+            Ok(true) => {
+                self.along_sums_together(sums, take, &mut own);
+                self.recorded.derivatives = own;
+                return Ok(());
+            }
+            Ok(false) => {}
+            Err(k) => {
+                self.recorded.derivatives = own;
+                return Err(Failure {
+                    what: n + k,
+                    recoverable: true,
+                });
+            }
+        }
         own.numbers.clear();
-        (own.numbers).extend(numbers.iter().map(|&re| Dual { re, ..constant }));
+        (own.numbers).extend(own.row.iter().map(|&re| Dual { re, ..constant }));
         own.out.resize(self.scene.layout.n_rates(), constant);
         let mut outcome = Ok(());
         for (chunk, some) in sums.chunks(WIDTH).enumerate() {
@@ -286,6 +310,69 @@ impl System {
         }
         self.recorded.derivatives = own;
         outcome
+    }
+
+    /// Returns the loops that the rates as they are taken now read.
+    fn present_loops(&mut self) -> Option<&mut AlgebraicLoops> {
+        match self.recorded.branches.is_holding() {
+            true => self.recorded.branches.loops.as_mut(),
+            false => self.recorded.loops.as_mut(),
+        }
+    }
+
+    /// Prepares to follow many directions at once from the numbers in `own.row`; returns whether
+    /// that is possible: closures are asked along a few directions.
+    fn look_along(&mut self, own: &mut Derivatives) -> Result<bool, usize> {
+        if !self.recorded.external.closures.is_empty() {
+            return Ok(false);
+        }
+        let y = self.scene.layout.y();
+        let is_state = |k: usize| k == Layout::TIME || y.contains(&k);
+        let mut places = 0..0;
+        if let Some(loops) = self.present_loops() {
+            places = loops.places();
+            if !loops.look_along(&own.row, is_state)? {
+                return Ok(false);
+            }
+        }
+        let holding = usize::from(self.recorded.branches.is_holding());
+        let varies = |k: usize| is_state(k) || places.contains(&k);
+        let tangent = own.tangents[holding].at(&own.row, self.present_rate(), varies);
+        Ok(tangent.is_some())
+    }
+
+    /// Evaluates the derivatives along sums of numbers by recorded ones; see
+    /// [`Self::along_sums`].
+    fn along_sums_together(
+        &mut self,
+        sums: &[Vec<usize>],
+        mut take: impl FnMut(usize, &dyn Fn(usize) -> f64),
+        own: &mut Derivatives,
+    ) {
+        let holding = usize::from(self.recorded.branches.is_holding());
+        let Some(tangent) = own.tangents[holding].here() else {
+            unreachable!("it was asked for where it is at hand");
+        };
+        let [row, rates] = &mut own.lanes;
+        row.clear();
+        row.resize(own.row.len(), Lane::ZERO);
+        rates.resize(self.scene.layout.n_rates(), Lane::ZERO);
+        for (chunk, some) in sums.chunks(LANES).enumerate() {
+            let mark = |row: &mut [Lane], slope: f64| {
+                for (k, sum) in some.iter().enumerate() {
+                    sum.iter().for_each(|&place| row[place].set(k, slope));
+                }
+            };
+            mark(row, 1.0);
+            if let Some(loops) = self.present_loops() {
+                loops.follow_together(row, some.len());
+            }
+            tangent.along(row, rates);
+            for k in 0..some.len() {
+                take(chunk * LANES + k, &|i| rates[i].get(k));
+            }
+            mark(row, 0.0);
+        }
     }
 
     /// Evaluates the same while something slides, by differences, as α changes with the state.

@@ -35,6 +35,7 @@ pub mod sensors;
 mod singular_step;
 mod sliding;
 mod speeds;
+mod tangents;
 pub(super) mod time_events;
 mod tunnelling;
 pub mod turns;

@@ -59,7 +59,7 @@ pub struct Batch {
 
 /// The vector instructions of this machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Instructions {
+pub(super) enum Instructions {
     Portable,
     #[cfg(all(feature = "native", target_arch = "x86_64"))]
     Avx2,
@@ -228,7 +228,7 @@ fn fused(steps: Vec<Step>) -> Vec<Step> {
 }
 
 impl Instructions {
-    fn of_this_machine() -> Self {
+    pub(super) fn of_this_machine() -> Self {
         #[cfg(all(feature = "native", target_arch = "x86_64"))]
         {
             if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl") {

@@ -23,6 +23,9 @@ pub enum Folding {
     /// Zeros and ones are structure: `0·x → 0`, `x + 0 → x`, `x − x → 0`, `(x + y) − y → x`, `0/x
     /// → 0`. For recorded physics, where a zero is a part that is not there.
     Structural,
+    /// Of these only what keeps every bit of finite numbers, but for the sign of a zero: not `(x +
+    /// y) − y → x`. For derivatives of what has been recorded.
+    Finite,
 }
 
 /// The result of an operation of a number and a value of which nothing need be recorded.
@@ -34,11 +37,16 @@ pub(super) enum Trivial {
 }
 
 impl Folding {
+    /// Returns whether zeros are structure.
+    fn is_structural(self) -> bool {
+        self != Folding::Strict
+    }
+
     /// Returns the result of `c op x` where that is `x` or a number, whatever `x` is.
     #[inline]
     pub(super) fn number_before(self, op: BinaryOp, c: f64) -> Option<Trivial> {
         use BinaryOp::{Add, Along, Div, Mul};
-        let is_zero = c == 0.0 && self == Folding::Structural;
+        let is_zero = c == 0.0 && self.is_structural();
         match op {
             Add if is_zero || c == 0.0 && c.is_sign_negative() => Some(Trivial::Operand),
             Mul if c == 1.0 => Some(Trivial::Operand),
@@ -51,7 +59,7 @@ impl Folding {
     #[inline]
     pub(super) fn number_behind(self, op: BinaryOp, c: f64) -> Option<Trivial> {
         use BinaryOp::{Add, Div, Kept, Mul, Sub};
-        let is_zero = c == 0.0 && self == Folding::Structural;
+        let is_zero = c == 0.0 && self.is_structural();
         match op {
             Add if is_zero || c == 0.0 && c.is_sign_negative() => Some(Trivial::Operand),
             Sub if is_zero || c == 0.0 && c.is_sign_positive() => Some(Trivial::Operand),
@@ -232,7 +240,7 @@ impl Builder {
         cb: Option<f64>,
     ) -> Option<Value> {
         use BinaryOp::{Div, Mul, Pow, Sub};
-        let structural = self.folding == Folding::Structural;
+        let structural = self.folding.is_structural();
         let before = ca.and_then(|c| Some((b, self.folding.number_before(op, c)?)));
         let behind = || cb.and_then(|c| Some((a, self.folding.number_behind(op, c)?)));
         match before.or_else(behind) {
@@ -256,7 +264,9 @@ impl Builder {
             Pow => return self.simpler_power(a, cb?),
             _ => {}
         }
-        if structural && let Some(v) = self.cancelled(op, a, b, ca, cb) {
+        if self.folding == Folding::Structural
+            && let Some(v) = self.cancelled(op, a, b, ca, cb)
+        {
             return Some(v);
         }
         self.without_minus_signs(op, a, b, ca, cb)
@@ -273,7 +283,7 @@ impl Builder {
         cb: Option<f64>,
     ) -> Option<Value> {
         use BinaryOp::{Add, Along, Div, Mul, Sub};
-        let structural = self.folding == Folding::Structural;
+        let structural = self.folding.is_structural();
         let negated = |v: Value| match self.nodes[v.index()] {
             Node::Unary(UnaryOp::Neg, y) => Some(y),
             _ => None,
@@ -428,7 +438,7 @@ impl Builder {
         if a == b && comparison == Comparison::Lt {
             return self.constant(0.0);
         }
-        if a == b && self.folding == Folding::Structural {
+        if a == b && self.folding.is_structural() {
             return self.constant(1.0);
         }
         // "0 < condition" is the condition
@@ -513,7 +523,7 @@ impl Builder {
                 _ => self.constant(f64::NAN),
             };
         }
-        if self.folding == Folding::Structural && negative == zero && zero == positive {
+        if self.folding.is_structural() && negative == zero && zero == positive {
             return zero;
         }
         let first = self.arguments.len() as u32;

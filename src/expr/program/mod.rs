@@ -53,6 +53,8 @@ mod schedule;
 )]
 mod structure;
 mod switching;
+#[cfg(feature = "solver")]
+mod tangent;
 mod tape;
 #[cfg(test)]
 mod tests;
@@ -73,3 +75,5 @@ pub(super) use run::too_few;
 pub use run::{Program, Work};
 #[cfg(feature = "solver")]
 pub(crate) use structure::Structures;
+#[cfg(feature = "solver")]
+pub(crate) use tangent::{LANES, Lane, Tangent};

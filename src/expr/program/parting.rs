@@ -78,7 +78,7 @@ impl Program {
 
 impl Builder {
     /// Returns which nodes depend on some inputs.
-    fn changes(&self, inputs: &[Value]) -> Vec<bool> {
+    pub(super) fn changes(&self, inputs: &[Value]) -> Vec<bool> {
         let mut changes = vec![false; self.nodes.len()];
         for v in inputs {
             changes[v.index()] = true;
