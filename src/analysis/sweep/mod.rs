@@ -18,6 +18,8 @@ mod parameter;
 mod table;
 
 pub use measure::Measure;
+#[cfg(feature = "cli")]
+pub(crate) use measure::is_measure;
 pub use parameter::Parameter;
 pub use table::Table;
 
