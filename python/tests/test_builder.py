@@ -80,6 +80,8 @@ def test_all_mistakes_are_told_at_once_by_name():
     other, _ = pendulum()
     with pytest.raises(ValueError, match="another model"):
         other.revolute("hinge", model.part("more").at([0, 0, 0]), other.ground)
+    with pytest.raises(ValueError, match="another model"):
+        other.part("more").set(CM=model.part("more").at([0, 0, 0]))
     with pytest.raises(ValueError, match="WHEELS"):
         model.element("WHEELS")
     with pytest.raises(TypeError, match="list of expressions"):

@@ -39,7 +39,7 @@ pub fn responses(
     let mut found = channels(sources, Some(&x_name), &measured, Shown::Values)?;
     let choices = choices(run, &others);
     let is_alone = found.curves.len() == 1;
-    if is_alone && choices.len() > 1 {
+    if is_alone && choices.len() > 1 && have_curves(&choices) {
         found.title = format!("{}: {}", found.title, found.curves[0].name);
     }
     let curves = std::mem::take(&mut found.curves);
@@ -86,15 +86,20 @@ fn choices(run: &Run, parameters: &[usize]) -> Vec<Choice> {
     all.into_iter().map(|(_, choice)| choice).collect()
 }
 
-/// Parts a measure into a curve for each choice, from the least x on; into points, where there are
-/// too many choices or one has a single run. `is_alone`: no other measure is shown.
+/// Returns whether each choice has a curve; else runs are points.
+fn have_curves(choices: &[Choice]) -> bool {
+    choices.len() <= MOST_CHOICES && choices.iter().all(|c| c.rows.len() > 1)
+}
+
+/// Parts a measure into a curve for each choice, from the least x on, or into points. `is_alone`:
+/// no other measure is shown.
 fn parted(curve: Curve, choices: &[Choice], is_alone: bool) -> Vec<Curve> {
     let in_order = |rows: &[usize]| {
         let mut points: Vec<(f64, f64)> = rows.iter().map(|&row| curve.points[row]).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         points
     };
-    if choices.len() > MOST_CHOICES || choices.iter().any(|c| c.rows.len() < 2) {
+    if !have_curves(choices) {
         let all: Vec<usize> = (0..curve.points.len()).collect();
         let gap = |(x, y)| [(x, y), (x, f64::NAN)];
         let points = in_order(&all).into_iter().flat_map(gap).collect();
