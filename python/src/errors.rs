@@ -63,7 +63,7 @@ pub fn diagnostic<'py>(py: Python<'py>, d: &Diagnostic) -> PyResult<Bound<'py, P
     let mut d = d.clone();
     d.message = in_keywords(&d.message);
     d.help.iter_mut().for_each(|help| *help = in_keywords(help));
-    d.file = d.file.map(|file| in_keywords(&file));
+    d.element = d.element.map(|element| in_keywords(&element));
     let severity = match d.severity {
         Severity::Note => "note",
         Severity::Warning => "warning",
