@@ -14,16 +14,18 @@ __all__ = ["Body", "Element", "Marker", "ModelBuilder"]
 Vector = Sequence[float]
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Any, model: ModelBuilder) -> Any:
     """Return a value as the compiled half takes it: numbers, texts, lists, numbers of handles."""
     if isinstance(value, Element):
+        if value._model is not model:
+            raise ValueError("this statement belongs to another model")
         return value.number
     if isinstance(value, str):
         return value
     if hasattr(value, "tolist"):
         return value.tolist()
     if isinstance(value, Sequence):
-        return [_plain(each) for each in value]
+        return [_plain(each, model) for each in value]
     return value
 
 
@@ -74,7 +76,7 @@ class Element:
             if setting is True:
                 self._model._core.flag(self._core, name)
             else:
-                self._model._core.set(self._core, name, _plain(setting))
+                self._model._core.set(self._core, name, _plain(setting, self._model))
         return self
 
     def function(self, expression: str | float) -> Any:

@@ -22,7 +22,10 @@ class Mode:
     eigenvalue : complex
         In 1/time and rad/time of the model.
     shape : dict of str to complex
-        Motion of every state, by its name.
+        Motion of every part, ``"PART/2.X"`` to ``"PART/2.Z"`` along the axes of ground and
+        ``"PART/2.AX"`` to ``"PART/2.AZ"`` about them in radians, and of every state of VARIABLEs,
+        DIFFs and systems, by its name. The largest
+        displacement is 1; where nothing is displaced, the largest rotation.
     """
 
     eigenvalue: complex
@@ -86,12 +89,19 @@ def modes_of(text: str) -> list[Mode]:
     """Return the modes that the compiled half has written as JSON."""
     found: dict[str, Any] = json.loads(text)
     return [
-        Mode(
-            complex(mode["real"], mode["imaginary"]),
-            {state["state"]: complex(*state["value"]) for state in mode["states"]},
-        )
-        for mode in found["modes"]
+        Mode(complex(mode["real"], mode["imaginary"]), _shape_of(mode)) for mode in found["modes"]
     ]
+
+
+def _shape_of(mode: dict[str, Any]) -> dict[str, complex]:
+    """Return the motions of a mode by their names."""
+    shape: dict[str, complex] = {}
+    for part in mode["parts"]:
+        for key, names in (("translation", "X Y Z"), ("rotation", "AX AY AZ")):
+            for name, value in zip(names.split(), part[key]):
+                shape[f"{part['part']}.{name}"] = complex(*value)
+    shape.update({state["state"]: complex(*state["value"]) for state in mode["states"]})
+    return shape
 
 
 def _plain(name: str) -> str:

@@ -6,7 +6,7 @@ import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypedDict
+from typing import TYPE_CHECKING, Any, Literal, SupportsFloat, SupportsIndex, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from ._verify import Verification
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
+    from ._builder import ModelBuilder
     from ._sweep import SweepTable
 
 __all__ = ["Model", "Options", "Session", "run"]
@@ -112,13 +113,19 @@ def simulation_of(
     kind: Kind, end: float | None, duration: float | None, steps: int | None, dtout: float | None
 ) -> dict[str, Any]:
     """Return a simulation as the compiled half takes it."""
-    return {"kind": kind, "end": end, "duration": duration, "steps": steps, "dtout": dtout}
+    numbers = {"end": end, "duration": duration, "dtout": dtout}
+    for name, number in numbers.items():
+        if number is not None and not isinstance(number, SupportsFloat):
+            raise TypeError(f"{name} is a number, not {number!r}")
+    if steps is not None and not (isinstance(steps, SupportsIndex) and int(steps) >= 0):
+        raise ValueError(f"steps is a whole number from 0 on, not {steps!r}")
+    return {"kind": kind, "steps": steps, **numbers}
 
 
 class Model:
     """A multibody model as its dataset (``.adm``) says.
 
-    Made by `Model.read` or `Model.from_text`. Models can be pickled.
+    Made by `Model.read`, `Model.from_text` or `Model.builder`. Models can be pickled.
 
     Examples
     --------
@@ -179,6 +186,24 @@ class Model:
             Every mistake.
         """
         return cls(_core.Model.from_text(text, file))
+
+    @staticmethod
+    def builder(title: str) -> ModelBuilder:
+        """Begin a model that the program makes.
+
+        Parameters
+        ----------
+        title : str
+            Its title.
+
+        Returns
+        -------
+        ModelBuilder
+            The builder, whose `build` makes the model.
+        """
+        from ._builder import ModelBuilder
+
+        return ModelBuilder(title)
 
     @property
     def title(self) -> str:

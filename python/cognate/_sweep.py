@@ -24,6 +24,8 @@ __all__ = ["SweepTable", "sweep"]
 #: Index of the point, parameters, measures, status, number of warnings, reason.
 Row = tuple[int, list[float], list[float], str, int, str]
 
+#: Most choices of the other parameters that have a curve each.
+_MOST_CHOICES = 8
 
 
 class SweepTable(Mapping[str, NDArray[np.float64]]):
@@ -113,6 +115,9 @@ class SweepTable(Mapping[str, NDArray[np.float64]]):
     def plot(self, x: str | None = None, y: str | None = None, *, ax: Any = None) -> Any:
         """Plot a measure over a parameter with matplotlib.
 
+        Each choice of the other parameters has a curve; the runs are points where there are more
+        than eight, or where one has a single run.
+
         Parameters
         ----------
         x : str, optional
@@ -132,13 +137,26 @@ class SweepTable(Mapping[str, NDArray[np.float64]]):
         x, y = x or self.parameters[0], y or self.measures[0]
         if ax is None:
             _, ax = pyplot.subplots()
-        order = np.argsort(self[x], kind="stable")
-        style = "o-" if len(self.parameters) == 1 else "o"
-        ax.plot(self[x][order], self[y][order], style)
+        choices = self._choices(x)
+        is_joined = len(choices) <= _MOST_CHOICES and min(map(len, choices.values()), default=0) > 1
+        for label, rows in choices.items() if is_joined else [("", range(len(self.run)))]:
+            order = sorted(rows, key=lambda row: float(self[x][row]))
+            ax.plot(self[x][order], self[y][order], "o-" if is_joined else "o", label=label)
+        if is_joined and len(choices) > 1:
+            ax.legend()
         unit = self.units.get(y, "")
         ax.set_xlabel(x)
         ax.set_ylabel(f"{y} [{unit}]" if unit else y)
         return ax
+
+    def _choices(self, x: str) -> dict[str, list[int]]:
+        """Return the rows in which all parameters but `x` are the same, by these."""
+        others = [name for name in self.parameters if name != x]
+        choices: dict[str, list[int]] = {}
+        for row in range(len(self.run)):
+            named = ", ".join(f"{name} = {self[name][row]:.6g}" for name in others)
+            choices.setdefault(named, []).append(row)
+        return choices
 
     def __repr__(self) -> str:
         done = int(self.ok.sum())

@@ -26,11 +26,44 @@ impl Kind {
     }
 }
 
+/// Options of the command line, and the keywords for the same in Python; `*` stands for the word
+/// behind.
+const KEYWORDS: [(&str, &str); 5] = [
+    ("--skip-unsupported *", "skip=[\"*\"]"),
+    ("--zero-user", "zero_user=True"),
+    ("--piecewise", "piecewise=True"),
+    ("--method *", "method=\"*\""),
+    ("--error", "error"),
+];
+
+/// Returns a text with the keywords of Python in place of the options of the command line.
+fn in_keywords(text: &str) -> String {
+    let mut text = text.to_owned();
+    for (option, keyword) in KEYWORDS {
+        let head = option.trim_end_matches('*');
+        let Some((before, after)) = text.split_once(head) else {
+            continue;
+        };
+        let is_word = |c: char| c.is_alphanumeric() || c == '_';
+        let end = match option == head {
+            true => 0,
+            false => after.find(|c| !is_word(c)).unwrap_or(after.len()),
+        };
+        let (word, rest) = after.split_at(end);
+        text = format!("{before}{}{rest}", keyword.replace('*', word));
+    }
+    text
+}
+
 /// Returns a diagnostic as a `cognate.Diagnostic`.
 ///
 /// # Errors
 /// Whatever Python raises when the object is made.
 pub fn diagnostic<'py>(py: Python<'py>, d: &Diagnostic) -> PyResult<Bound<'py, PyAny>> {
+    let mut d = d.clone();
+    d.message = in_keywords(&d.message);
+    d.help.iter_mut().for_each(|help| *help = in_keywords(help));
+    d.element = d.element.map(|element| in_keywords(&element));
     let severity = match d.severity {
         Severity::Note => "note",
         Severity::Warning => "warning",

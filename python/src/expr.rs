@@ -394,8 +394,16 @@ impl Expr {
         if let Some(place) = self.names().iter().position(|n| n == name) {
             return Ok(Some(place));
         }
-        let input = (self.shared.expr().input_named(name))
-            .map_err(|e| errors::exception(py, Kind::Expr, e, Some(name)))?;
+        let input = self.shared.expr().input_named(name).map_err(|mut said| {
+            if said.is(Cause::UnknownName) {
+                said = Diagnostic::error(Cause::UnknownName, format!("there is no input `{name}`"));
+            }
+            let all = match self.names() {
+                [] => "this expression has no inputs".to_owned(),
+                all => format!("inputs of this expression: {}", all.join("; ")),
+            };
+            errors::exception(py, Kind::Expr, said.help(all), Some(name))
+        })?;
         Ok(self.inputs().iter().position(|i| *i == input))
     }
 

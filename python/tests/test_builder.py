@@ -45,7 +45,7 @@ def test_a_four_bar_closes_with_markers_where_they_are_said():
 
 
 def test_a_law_is_a_callable_and_goes_with_the_model():
-    model = cg.ModelBuilder("a mass on a spring").units("MKS")
+    model = cg.Model.builder("a mass on a spring").units("MKS")
     mass = model.part("mass").mass(4).inertia(1, 1, 1).center([0, 0, 1.5])
     i, j = mass.at([0, 0, 1.5]), model.ground.at([0, 0, 0])
     model.translational("guide", i, model.ground)
@@ -80,6 +80,8 @@ def test_all_mistakes_are_told_at_once_by_name():
     other, _ = pendulum()
     with pytest.raises(ValueError, match="another model"):
         other.revolute("hinge", model.part("more").at([0, 0, 0]), other.ground)
+    with pytest.raises(ValueError, match="another model"):
+        other.part("more").set(CM=model.part("more").at([0, 0, 0]))
     with pytest.raises(ValueError, match="WHEELS"):
         model.element("WHEELS")
     with pytest.raises(TypeError, match="list of expressions"):

@@ -127,6 +127,9 @@ def test_inputs_that_are_missing_wrong_or_given_twice_are_told():
     assert caught.value.code == "missing_value"
     with pytest.raises(cg.ExprError):
         spring({"DM(10,20": 1.0})
+    with pytest.raises(cg.ExprError, match="there is no") as caught:
+        spring({"DM(10,20)": 1.0, "VR(10,20)": 1.0}, y=2)
+    assert "DM(10, 20); VR(10, 20)" in str(caught.value.advice)
     with pytest.raises(TypeError, match="twice"):
         cg.expr("TIME")(1.0, TIME=2.0)
     assert cg.expr("TIME")(TIME=2.0) == 2.0

@@ -105,9 +105,23 @@ def test_linear_systems_are_what_python_control_takes(falling):
     np.testing.assert_allclose(np.linalg.eigvals(A), [2j, -2j], atol=1e-9)
     modes = cg.Model.from_text(plant).modes()
     assert modes[0].eigenvalue == pytest.approx(2j)
+    assert abs(modes[0].shape["PART/2.Z"]) == pytest.approx(1)
+    assert modes[0].shape["PART/2.X"] == modes[0].shape["PART/2.AY"] == 0
     control = pytest.importorskip("control")
     system = control.ss(A, B, C, D, **names)
     assert system.dcgain() == pytest.approx(1 / 8)
+
+
+def test_advice_names_keywords_of_python(pushed):
+    with pytest.raises(cg.ModelError, match="zero_user=True"):
+        pushed.run(end=1.0)
+    with pytest.raises(cg.ModelError, match="^error: "):
+        pushed.run(end=1.0, error=-1.0)
+    for wrong in (dict(steps=-1), dict(steps=1.5), dict(steps="9")):
+        with pytest.raises(ValueError, match="whole number"):
+            pushed.run(end=1.0, **wrong)
+    with pytest.raises(TypeError, match="end is a number"):
+        pushed.run(end="1")
 
 
 def test_routines_are_callables(pushed):

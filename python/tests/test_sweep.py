@@ -71,6 +71,15 @@ def test_designs_and_plots(drop):
     np.testing.assert_array_equal(given["VARIABLE/3"], [3, 1])
     axes = table.plot()
     assert axes.get_xlabel() == "VARIABLE/3" and "meter" in axes.get_ylabel()
+    grid = {"PART/2.MASS": [2, 1], "VARIABLE/3": [1, 3, 2]}
+    axes = drop.sweep(grid, "last(DX(2))", end=1.0, steps=2).plot("VARIABLE/3")
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert labels == ["PART/2.MASS = 2", "PART/2.MASS = 1"]
+    for line in axes.lines:
+        np.testing.assert_array_equal(line.get_xdata(), [1, 2, 3])
+    scattered = drop.sweep({"VARIABLE/3": "0:1", "PART/2.MASS": "1:2"}, "last(DX(2))", **latin)
+    (points,) = scattered.plot().lines
+    assert points.get_linestyle() == "None" and len(points.get_xdata()) == 5
     with pytest.raises(ValueError, match="column for each parameter"):
         drop.sweep({"VARIABLE/3": []}, "last(DX(2))", end=1.0, design=[[1.0, 2.0]])
 

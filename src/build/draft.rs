@@ -257,6 +257,12 @@ impl ModelBuilder {
 
     /// Gives an argument of a draft its value.
     pub(super) fn give(&self, draft: usize, keyword: &str, setting: Setting) {
-        self.inner.borrow_mut().drafts[draft].give(keyword, &setting);
+        let setting = setting.numbered(keyword, self);
+        let mut inner = self.inner.borrow_mut();
+        let draft = &mut inner.drafts[draft];
+        match setting {
+            Ok(setting) => draft.give(keyword, &setting),
+            Err(said) => draft.refuse(said),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Markers that stand at places in ground: their coordinates in the body that carries them follow
 //! when the model is made, so that bodies may be placed before or after.
 
-use super::{Body, Element, Frame, ModelBuilder};
+use super::{Body, Element, Frame, Key, ModelBuilder};
 use crate::dataset::row::{Given, Statement, canonical};
 use crate::dataset::value::{Value, angles, numbers};
 use crate::diagnostic::{Diagnostic, Span};
@@ -13,14 +13,14 @@ use crate::space::{self, Mat3, Vec3, rotation};
 /// is.
 #[derive(Clone, Copy, Debug)]
 pub struct End {
-    draft: usize,
+    key: Key,
     is_body: bool,
 }
 
 impl From<&Element<'_, Frame>> for End {
     fn from(marker: &Element<'_, Frame>) -> Self {
         Self {
-            draft: marker.draft,
+            key: marker.key(),
             is_body: false,
         }
     }
@@ -29,7 +29,7 @@ impl From<&Element<'_, Frame>> for End {
 impl From<&Element<'_, Body>> for End {
     fn from(body: &Element<'_, Body>) -> Self {
         Self {
-            draft: body.draft,
+            key: body.key(),
             is_body: true,
         }
     }
@@ -170,13 +170,20 @@ impl ModelBuilder {
 
     /// Returns the markers of two ends; a body gets one where the other end is.
     ///
-    /// Two bodies do not say where: told with the other mistakes.
+    /// Two bodies do not say where, and ends of another builder are none here: told with the other
+    /// mistakes.
     pub(super) fn markers(&self, name: &str, i: End, j: End) -> [u32; 2] {
+        let drafts = [i, j].map(|end| self.statement(end.key).map(|e| e.draft));
         let mut inner = self.inner.borrow_mut();
+        let [Some(at_i), Some(at_j)] = drafts else {
+            let what = format!("an end of `{name}` is an element of another builder");
+            inner.wrong.push(Diagnostic::error("unfit_value", what));
+            return [0; 2];
+        };
         let (i, j) = match (i.is_body, j.is_body) {
-            (false, false) => (i.draft, j.draft),
-            (false, true) => (i.draft, inner.beside(i.draft, j.draft)),
-            (true, false) => (inner.beside(j.draft, i.draft), j.draft),
+            (false, false) => (at_i, at_j),
+            (false, true) => (at_i, inner.beside(at_i, at_j)),
+            (true, false) => (inner.beside(at_j, at_i), at_j),
             (true, true) => {
                 let what =
                     format!("`{name}` stands between two bodies, neither of which says where");

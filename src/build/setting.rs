@@ -1,7 +1,7 @@
 //! Values of arguments as a program gives them, made into the kinds that the table of statements
 //! takes.
 
-use super::Element;
+use super::{Element, Key, ModelBuilder};
 use crate::dataset::row::{Argument, Meaning, meaning};
 use crate::dataset::value::{Kind, Number, Value};
 use crate::diagnostic::{Diagnostic, near_names};
@@ -30,6 +30,10 @@ pub enum Setting {
     Texts(Vec<String>),
     /// FUNCTION = USER(…), which a closure or routine computes
     User(Vec<f64>),
+    /// an element of the builder, with its number
+    Handle(Key, u32),
+    /// several
+    Handles(Vec<(Key, u32)>),
 }
 
 macro_rules! settings {
@@ -74,17 +78,39 @@ impl<const N: usize> From<[&str; N]> for Setting {
 
 impl<Kind> From<&Element<'_, Kind>> for Setting {
     fn from(element: &Element<'_, Kind>) -> Self {
-        Setting::Whole(element.number().into())
+        Setting::Handle(element.key(), element.number())
     }
 }
 
 impl<Kind, const N: usize> From<[&Element<'_, Kind>; N]> for Setting {
     fn from(all: [&Element<'_, Kind>; N]) -> Self {
-        Setting::Wholes(all.map(|e| e.number().into()).to_vec())
+        Setting::Handles(all.map(|e| (e.key(), e.number())).to_vec())
     }
 }
 
 impl Setting {
+    /// Returns the numbers of elements in place of their handles.
+    ///
+    /// # Errors
+    /// A handle of another builder, whose number means something else here.
+    pub(super) fn numbered(self, keyword: &str, of: &ModelBuilder) -> Result<Self, Diagnostic> {
+        let foreign = |key: &Key| of.statement(*key).is_none();
+        let told = || {
+            let what = format!("{keyword} is an element of another builder");
+            Diagnostic::error("unfit_value", what)
+        };
+        match self {
+            Setting::Handle(key, _) if foreign(&key) => Err(told()),
+            Setting::Handles(all) if all.iter().any(|(key, _)| foreign(key)) => Err(told()),
+            Setting::Handle(_, number) => Ok(Setting::Whole(number.into())),
+            Setting::Handles(all) => {
+                let numbers = all.into_iter().map(|(_, number)| number.into());
+                Ok(Setting::Wholes(numbers.collect()))
+            }
+            other => Ok(other),
+        }
+    }
+
     /// Returns the value as an argument takes it.
     ///
     /// # Errors
@@ -160,6 +186,7 @@ impl Setting {
             Setting::Whole(n) => Some(vec![*n as f64]),
             Setting::Wholes(all) => Some(all.iter().map(|&n| n as f64).collect()),
             Setting::Flag | Setting::Text(_) | Setting::Texts(_) | Setting::User(_) => None,
+            Setting::Handle(..) | Setting::Handles(_) => None,
         }
     }
 
@@ -180,6 +207,8 @@ impl Setting {
             Setting::Text(text) => format!("`{text}`"),
             Setting::Texts(_) => "a list of texts".into(),
             Setting::User(_) => "USER(…)".into(),
+            Setting::Handle(..) => "an element".into(),
+            Setting::Handles(_) => "a list of elements".into(),
         }
     }
 }

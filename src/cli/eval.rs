@@ -30,6 +30,9 @@ pub struct Args {
     /// The expression; - reads it from standard input
     #[arg(allow_hyphen_values = true)]
     expression: String,
+    /// Values given without their option, which is told
+    #[arg(hide = true)]
+    further: Vec<String>,
     /// Time, or a range first:last:step
     #[arg(long, value_name = "T|A:B:STEP", allow_hyphen_values = true)]
     time: Option<String>,
@@ -106,6 +109,9 @@ enum Time {
 /// # Errors
 /// The first mistake in the expression or in the data; or an operation without a value.
 pub fn run(args: &Args) -> Outcome {
+    if let Some(further) = args.further.first() {
+        return Err(without_option(further));
+    }
     let text = match args.expression.as_str() {
         "-" => from_stdin()?,
         text => text.to_owned(),
@@ -117,6 +123,22 @@ pub fn run(args: &Args) -> Outcome {
         ));
     }
     outcome
+}
+
+/// Says which option takes a value that was given behind the expression: `TIME=3`, `DX(1,2)=3`.
+fn without_option(further: &str) -> Failure {
+    let what = format!("`{further}` is neither the expression nor an option");
+    let advice = match further.split_once('=') {
+        Some((name, value)) if ["TIME", "T"].contains(&name.trim().to_uppercase().as_str()) => {
+            format!("give the time as `--time {}`", value.trim())
+        }
+        Some(_) => format!("give values as `--set '{further}'`, the time as `--time 1.5`"),
+        None => "an expression with blanks stands in quotes; the time is `--time 1.5`".to_owned(),
+    };
+    Failure {
+        exit: Exit::Usage,
+        ..Failure::from(Diagnostic::error("usage", what).help(advice))
+    }
 }
 
 /// The mistakes as JSON. `column` counts the whole expression, as the language does; `line` and

@@ -41,6 +41,7 @@ mod recorded;
 pub mod render;
 mod repl;
 mod report;
+mod response;
 mod run;
 mod runs;
 mod setup;

@@ -4,6 +4,7 @@ use super::convert::same_file;
 use super::grouped;
 use super::moved::has_ending;
 use super::recorded::add_measures;
+use super::response::responses;
 use super::setup::{self, Setup};
 use super::table::Table;
 use super::{Exit, Failure, Outcome, remark, render, run, say, width};
@@ -26,6 +27,7 @@ Examples:
   cognate plot a/run.csv --over b/run.res --y slider.X                 two runs
   cognate plot run.csv --x slider.X --y slider.VX --out phase.svg      a phase plot
   cognate plot run.csv --y slider.VX --as spectrum
+  cognate plot crank_sweep.csv --x PART/2.MASS                         a sweep: a curve for each choice of the others
   cognate plot run.csv --group Drives                                 a group of functions (cognate group)
   cognate plot crane.adm --y swing --end 4                            a function of the model, without a run
   cognate plot run.csv --statistics")]
@@ -44,7 +46,7 @@ pub struct Args {
     /// Last time for functions of a model
     #[arg(long, value_name = "TIME")]
     end: Option<f64>,
-    /// Column to show them over; time when not given
+    /// Column to show them over; time when not given, of a sweep its first parameter
     #[arg(long, value_name = "COLUMN")]
     x: Option<String>,
     /// Results of another run, shown over the first (repeatable)
@@ -138,7 +140,7 @@ pub fn run(args: &Args) -> Outcome {
         let asked: Vec<&str> = names.iter().chain(&args.x).map(String::as_str).collect();
         add_measures(run, file, args.model.as_deref(), &asked)?;
     }
-    let mut found = channels(&sources, args.x.as_deref(), &names, args.shown.into())?;
+    let mut found = shown(args, &sources, &names)?;
     if args.statistics {
         say(&statistics_of(&found, args.json));
         return Ok(Exit::Done);
@@ -155,6 +157,17 @@ pub fn run(args: &Args) -> Outcome {
         Some(file) => write(&plots, file),
         None => draw_all(plots),
     }
+}
+
+/// Returns the curves: those of a sweep by its parameters, else the columns as they are.
+fn shown(args: &Args, sources: &[Source], names: &[String]) -> Result<Channels, Diagnostic> {
+    let (x, shown) = (args.x.as_deref(), Shown::from(args.shown));
+    if let ([source], Shown::Values, false) = (sources, shown, args.statistics)
+        && let Some(found) = responses(source, x, names)?
+    {
+        return Ok(found);
+    }
+    channels(sources, x, names, shown)
 }
 
 /// Returns whether a file is a model, whose functions are shown.

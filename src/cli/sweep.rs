@@ -359,10 +359,11 @@ fn told(args: &Args, rows: &[Row]) -> Exit {
             "{n_failed} of {n} runs failed; run {run}: {reason}"
         ));
     }
-    let warned = rows.iter().filter(|row| row.warnings > 0).count();
-    if !args.quiet && warned > 0 {
+    let warned = rows.iter().filter(|row| row.warnings > 0);
+    if let (false, Some(first)) = (args.quiet, warned.clone().next()) {
+        let (n_warned, run) = (warned.count(), first.run);
         remark(format!(
-            "{warned} of {n} runs have warnings: cognate run tells those of one"
+            "{n_warned} of {n} runs have warnings, run {run} first: cognate run tells them for a model with these numbers"
         ));
     }
     match failed.into_iter().next() {

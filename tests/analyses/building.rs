@@ -200,6 +200,40 @@ fn mistakes_are_told_at_once_by_the_names_of_their_elements() {
 }
 
 #[test]
+fn elements_of_another_builder_are_told_wherever_they_are_given() {
+    let (other, model) = (ModelBuilder::new("other"), ModelBuilder::new("model"));
+    for k in 0..5 {
+        other
+            .part("far")
+            .mass(1.0)
+            .inertia([1.0; 3])
+            .center([f64::from(k); 3]);
+    }
+    let far = other.part("far");
+    let (there, joint) = (
+        far.at([0.0; 3]),
+        other.revolute("o", &far.at([0.0; 3]), &other.ground()),
+    );
+    let near = model
+        .part("near")
+        .mass(1.0)
+        .inertia([1.0; 3])
+        .center([0.0; 3]);
+    let here = near.at([0.0; 3]);
+    model.revolute("markers", &there, &here);
+    model.spherical("a body", &here, &far);
+    model.spring("two bodies", &far, &near);
+    model.motion("turn", &joint, "TIME");
+    model.marker("on it", &far);
+    near.set("IM", &there);
+    let found = said(&model);
+    let foreign = found
+        .iter()
+        .filter(|text| text.contains("of another builder"));
+    assert_eq!(foreign.count(), 6, "{found:?}");
+}
+
+#[test]
 fn every_statement_of_the_table_is_reachable() {
     for row in STATEMENTS {
         let model = ModelBuilder::new("reach");

@@ -42,6 +42,19 @@ fn a_range_goes_up_or_down_and_ends_where_its_steps_end() {
 }
 
 #[test]
+fn a_value_without_its_option_is_told_which_one_takes_it() {
+    for (value, said) in [
+        ("TIME=3", "`--time 3`"),
+        ("t=0:1:0.1", "`--time 0:1:0.1`"),
+        ("DX(1,2)=3", "`--set 'DX(1,2)=3'`"),
+        ("3", "stands in quotes"),
+    ] {
+        let (code, err) = fails(&["TIME+DX(1,2)", value]);
+        assert!(code == 2 && err.contains(said), "{value}: {code} {err}");
+    }
+}
+
+#[test]
 fn what_is_no_time_or_leads_nowhere_is_a_mistake_of_usage() {
     for (time, said) in [
         ("abc", "neither a time nor a range"),

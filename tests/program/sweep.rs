@@ -68,7 +68,11 @@ fn a_grid_is_a_table_that_plot_and_parquet_know() {
         plot.out
     };
     assert!(plot(&["--list"]).contains("max(abs(VX(2)))"));
-    plot(&[]);
+    // a curve for each mass, from the least force on
+    let shown = plot(&[]);
+    for name in ["PART/2.MASS = 1", "PART/2.MASS = 4"] {
+        assert!(shown.contains(name), "{shown}");
+    }
 }
 
 #[test]

@@ -52,7 +52,7 @@ impl Saved {
         let text = std::str::from_utf8(bytes).ok();
         let value: Option<Value> = text.and_then(|t| serde_json::from_str(t).ok());
         let Some(value) = value.filter(|v| v.get(MARK).is_some()) else {
-            let d = Diagnostic::error("not_a_state", "is no state that cognate has saved");
+            let d = Diagnostic::error("not_a_state", "the text is no state that cognate has saved");
             return Err(d.help("what Adams saves is an image of its memory, whose layout is nowhere described: obey the commands that led there, and SAVE here")
                 .into());
         };

@@ -17,6 +17,11 @@ pub enum Values {
     Range(f64, f64, Option<usize>),
 }
 
+/// Returns whether a sweep may have so many runs.
+fn is_count(n: &usize) -> bool {
+    (1..=MOST_RUNS).contains(n)
+}
+
 fn wrong(what: String) -> Error {
     let d = Diagnostic::error("bad_sweep", what);
     d.help("0.1:0.5:9 is nine values from 0.1 to 0.5, both included; 1,2,5 is these three")
@@ -31,7 +36,13 @@ impl std::str::FromStr for Values {
     fn from_str(text: &str) -> Result<Self, Error> {
         let number = |word: &str| {
             let found = Number::parse(word.trim()).map(Number::value);
-            found.ok_or_else(|| wrong(format!("`{}` in `{text}` is no number", word.trim())))
+            found.ok_or_else(|| {
+                wrong(match word.trim() {
+                    "" => format!("a number is missing in `{text}`"),
+                    word if word == text => format!("`{word}` is no number"),
+                    word => format!("`{word}` in `{text}` is no number"),
+                })
+            })
         };
         let words: Vec<&str> = text.split(':').collect();
         match words[..] {
@@ -41,8 +52,7 @@ impl std::str::FromStr for Values {
             }
             [a, b] => Ok(Self::Range(number(a)?, number(b)?, None)),
             [a, b, n] => {
-                let count = n.trim().parse().ok();
-                let count = count.filter(|n| (1..=MOST_RUNS).contains(n));
+                let count = n.trim().parse().ok().filter(is_count);
                 let count = count.ok_or_else(|| {
                     let n = n.trim();
                     wrong(format!(
@@ -60,10 +70,13 @@ impl Values {
     /// Returns all values, for a grid.
     ///
     /// # Errors
-    /// A range without a number of values.
+    /// A range without a number of values, or with one that no sweep can have.
     pub fn all(&self) -> Result<Vec<f64>, Error> {
         match *self {
             Self::List(ref all) => Ok(all.clone()),
+            Self::Range(_, _, Some(n)) if !is_count(&n) => {
+                Err(wrong(format!("{n} is no count from 1 to {MOST_RUNS}")))
+            }
             Self::Range(a, _, Some(1)) => Ok(vec![a]),
             Self::Range(a, b, Some(n)) => {
                 let last = (n - 1) as f64;
@@ -73,6 +86,11 @@ impl Values {
                         return b;
                     }
                     let x = (a * (last - k as f64) + b * k as f64) / last;
+                    // products of the largest numbers are none
+                    let x = match x.is_finite() {
+                        true => x,
+                        false => a * (1.0 - k as f64 / last) + b * (k as f64 / last),
+                    };
                     // fifteen digits, so that round numbers come out round
                     format!("{x:.14e}").parse().unwrap_or(x)
                 };
@@ -85,7 +103,7 @@ impl Values {
     }
 
     /// Returns the value at a part of the way, 0 ≤ `part` < 1: of a range between its ends, of a
-    /// list one of its values.
+    /// list one of its values, of which there are some.
     fn at(&self, part: f64) -> f64 {
         match *self {
             Self::List(ref all) => {
@@ -128,10 +146,14 @@ pub fn grid(values: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Error> {
 /// The same seed gives the same points.
 ///
 /// # Errors
-/// More runs than [`MOST_RUNS`], or none.
+/// More runs than [`MOST_RUNS`], or none; a list without values.
 pub fn latin(values: &[Values], runs: usize, seed: u64) -> Result<Vec<Vec<f64>>, Error> {
-    if !(1..=MOST_RUNS).contains(&runs) {
+    if !is_count(&runs) {
         let what = format!("a latin hypercube of {runs} runs; it has 1 to {MOST_RUNS}");
+        return Err(Diagnostic::error("bad_sweep", what).into());
+    }
+    if let Some(k) = values.iter().position(|v| *v == Values::List(Vec::new())) {
+        let what = format!("parameter {k} has no values");
         return Err(Diagnostic::error("bad_sweep", what).into());
     }
     let mut random = Random(seed);
@@ -196,6 +218,11 @@ mod tests {
             assert!(text.parse::<Values>().is_err(), "{text}");
         }
         assert!("1:2".parse::<Values>().unwrap().all().is_err());
+        assert_eq!(of("-1e308:1e308:5"), [-1e308, -5e307, 0.0, 5e307, 1e308]);
+        for n in [0, MOST_RUNS + 1, usize::MAX] {
+            assert!(Values::Range(0.0, 1.0, Some(n)).all().is_err());
+        }
+        assert!(latin(&[Values::List(Vec::new())], 3, 0).is_err());
     }
 
     #[test]

@@ -50,6 +50,14 @@ pub struct Measure {
     unit: String,
 }
 
+/// Returns whether a column of a table has the name of a measure: `max(…)`.
+#[cfg(feature = "cli")]
+pub(crate) fn is_measure(name: &str) -> bool {
+    let word = name.strip_suffix(')').and_then(|t| t.split_once('('));
+    let is_word = |word: &str| REDUCTIONS.iter().any(|(w, _)| w.eq_ignore_ascii_case(word));
+    word.is_some_and(|(word, _)| is_word(word.trim()))
+}
+
 impl Measure {
     /// Reads a measure of the runs of a session, which has not begun.
     ///

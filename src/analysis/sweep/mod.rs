@@ -18,6 +18,8 @@ mod parameter;
 mod table;
 
 pub use measure::Measure;
+#[cfg(feature = "cli")]
+pub(crate) use measure::is_measure;
 pub use parameter::Parameter;
 pub use table::Table;
 
@@ -259,8 +261,8 @@ impl Sweep {
     /// done, on the thread of the caller. Runs that the caller interrupts have no row.
     ///
     /// # Errors
-    /// No parameters or measures, a point of another length or that is not finite; the error of
-    /// `each`, which ends the sweep.
+    /// No parameters or measures, a point of another length or that is not finite, a wanted run
+    /// without a point; the error of `each`, which ends the sweep.
     pub fn run(
         &self,
         points: &[Vec<f64>],
@@ -270,6 +272,10 @@ impl Sweep {
         mut each: impl FnMut(Row) -> Result<(), Error>,
     ) -> Result<(), Error> {
         self.check(points)?;
+        if let Some(run) = wanted.iter().find(|&&run| run >= points.len()) {
+            let what = format!("run {run} is wanted, of {} points", points.len());
+            return Err(Diagnostic::error("bad_sweep", what).into());
+        }
         let wanted = &self.in_groups(points, wanted);
         let crew = Crew {
             sweep: self,

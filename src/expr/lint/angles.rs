@@ -74,7 +74,9 @@ fn times_time(ast: &Ast, ix: NodeIx) -> Option<(NodeIx, f64)> {
         (Node::Constant(Constant::Time), _) => b,
         _ => return None,
     };
-    Some((factor, number(ast, factor)?)).filter(|(_, n)| n % 45.0 == 0.0 && degree_sized(*n))
+    // 0 is not degree-sized
+    let n = number(ast, factor).unwrap_or(0.0);
+    (degree_sized(n) && n % 45.0 == 0.0).then_some((factor, n))
 }
 
 /// Returns `45*TIME is 7.16 turns in a unit of time, 45D*TIME is 0.125`.
