@@ -3,7 +3,9 @@
 
 use super::plot::{Curve, Plot, Range, pieces};
 use crate::diagnostic::Diagnostic;
+use plotters::chart::DualCoordChartContext;
 use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -71,8 +73,9 @@ pub fn panels(plots: &[Plot]) -> Result<String, Diagnostic> {
     } else {
         60 + PANEL * plots.len() as u32
     };
-    let mut text = String::new();
-    let drawn = draw(plots, &ranges, (WIDTH * DOTS, height * DOTS), &mut text);
+    let (mut text, mut paths) = (String::new(), Vec::new());
+    let size = (WIDTH * DOTS, height * DOTS);
+    let drawn = draw(plots, &ranges, size, (&mut text, &mut paths));
     drawn.map_err(|e| {
         Diagnostic::error(
             "plot_failed",
@@ -80,7 +83,51 @@ pub fn panels(plots: &[Plot]) -> Result<String, Diagnostic> {
         )
     })?;
     let size = |w: u32, h: u32| format!("width=\"{w}\" height=\"{h}\"");
-    Ok(text.replacen(&size(WIDTH * DOTS, height * DOTS), &size(WIDTH, height), 1))
+    let text = text.replacen(&size(WIDTH * DOTS, height * DOTS), &size(WIDTH, height), 1);
+    Ok(with_paths(&text, &paths))
+}
+
+/// The points of a path that the backend is not given, as it would write them: number by number it
+/// would take longer than all the rest.
+const LEFT_OUT: &str = "points=\"\"";
+
+/// Puts the points of paths into the places where they were left out.
+fn with_paths(text: &str, paths: &[String]) -> String {
+    let mut whole =
+        String::with_capacity(text.len() + paths.iter().map(String::len).sum::<usize>());
+    for (k, piece) in text.split(LEFT_OUT).enumerate() {
+        if let Some(path) = k.checked_sub(1).and_then(|k| paths.get(k)) {
+            whole.extend(["points=\"", path, "\""]);
+        }
+        whole.push_str(piece);
+    }
+    whole
+}
+
+/// Writes points on whole dots.
+fn written(points: impl Iterator<Item = (i32, i32)>) -> String {
+    let mut text = String::new();
+    for (x, y) in points {
+        push_whole(x, &mut text);
+        text.push(',');
+        push_whole(y, &mut text);
+        text.push(' ');
+    }
+    text
+}
+
+fn push_whole(x: i32, text: &mut String) {
+    if x < 0 {
+        text.push('-');
+    }
+    let (size, mut power) = (x.unsigned_abs(), 1);
+    while size / power > 9 {
+        power *= 10;
+    }
+    while power > 0 {
+        text.push(char::from(b'0' + (size / power % 10) as u8));
+        power /= 10;
+    }
 }
 
 /// The ranges of the axes of a plot.
@@ -111,8 +158,13 @@ impl Ranges {
     }
 }
 
-/// Draws all panels on a backend, with their axes aligned.
-fn draw(plots: &[Plot], ranges: &[Ranges], size: (u32, u32), text: &mut String) -> Drawn<()> {
+/// Draws all panels on a backend, with their axes aligned; the points of curves go to `paths`.
+fn draw(
+    plots: &[Plot],
+    ranges: &[Ranges],
+    size: (u32, u32),
+    (text, paths): (&mut String, &mut Vec<String>),
+) -> Drawn<()> {
     let root = SVGBackend::with_string(text, size).into_drawing_area();
     root.fill(&WHITE)?;
     let mut area = root.margin(14 * DOTS, 12 * DOTS, 14 * DOTS, 26 * DOTS);
@@ -150,7 +202,7 @@ fn draw(plots: &[Plot], ranges: &[Ranges], size: (u32, u32), text: &mut String) 
             name * (plots.len() - k) as u32 / plots.len() as u32 / 2
         };
         let (panel, rest) = area.split_vertically(height.saturating_sub(shorter));
-        draw_panel(plot, &panel, ranges, [left, right], k == last)?;
+        draw_panel(plot, &panel, ranges, ([left, right], k == last), paths)?;
         area = rest;
     }
     root.present()?;
@@ -182,8 +234,8 @@ fn draw_panel<B: DrawingBackend>(
     plot: &Plot,
     area: &DrawingArea<B, Shift>,
     ranges: &Ranges,
-    [left, right]: [u32; 2],
-    named: bool,
+    ([left, right], named): ([u32; 2], bool),
+    paths: &mut Vec<String>,
 ) -> Drawn<()>
 where
     B::ErrorType: 'static,
@@ -232,28 +284,52 @@ where
     let curves = (plot.curves.iter().map(|c| (c, y, false)))
         .chain(plot.right.iter().map(|c| (c, second, true)));
     for ((curve, y, at_right), colour) in curves.zip(colours) {
-        let bands = bands(curve, colour, x, y);
-        match at_right {
-            true => chart.draw_secondary_series(bands).map(drop)?,
-            false => chart.draw_series(bands).map(drop)?,
-        }
-        for mut piece in pieces(&curve.points, x, WIDTH) {
-            // the range may be narrower than the largest numbers, which have no place in pixels
-            piece
-                .iter_mut()
-                .for_each(|p| *p = (p.0.clamp(x.0, x.1), p.1.clamp(y.0, y.1)));
-            let dot = |point| [Circle::new(point, 2 * DOTS, colour.filled())];
-            let style = colour.stroke_width(2 * DOTS);
-            let line = |piece| LineSeries::new(piece, style);
-            let dashes = |piece: Vec<_>| DashedLineSeries::new(piece, DASH, DASH, style);
-            match (piece.as_slice(), at_right, curve.is_dashed) {
-                ([point], false, _) => drop(chart.draw_series(dot(*point))?),
-                ([point], true, _) => drop(chart.draw_secondary_series(dot(*point))?),
-                (_, false, false) => drop(chart.draw_series(line(piece))?),
-                (_, true, false) => drop(chart.draw_secondary_series(line(piece))?),
-                (_, false, true) => drop(chart.draw_series(dashes(piece))?),
-                (_, true, true) => drop(chart.draw_secondary_series(dashes(piece))?),
+        draw_curve(&mut chart, (curve, at_right), colour, (x, y), paths)?;
+    }
+    Ok(())
+}
+
+type Axes = Cartesian2d<RangedCoordf64, RangedCoordf64>;
+
+/// Draws a curve with its bands of error, against the axis at the right or the other.
+fn draw_curve<B: DrawingBackend>(
+    chart: &mut DualCoordChartContext<'_, B, Axes, Axes>,
+    (curve, at_right): (&Curve, bool),
+    colour: &RGBColor,
+    (x, y): (Range, Range),
+    paths: &mut Vec<String>,
+) -> Drawn<()>
+where
+    B::ErrorType: 'static,
+{
+    let bands = bands(curve, colour, x, y);
+    match at_right {
+        true => chart.draw_secondary_series(bands).map(drop)?,
+        false => chart.draw_series(bands).map(drop)?,
+    }
+    for mut piece in pieces(&curve.points, x, WIDTH) {
+        // the range may be narrower than the largest numbers, which have no place in pixels
+        piece
+            .iter_mut()
+            .for_each(|p| *p = (p.0.clamp(x.0, x.1), p.1.clamp(y.0, y.1)));
+        let dot = |point| [Circle::new(point, 2 * DOTS, colour.filled())];
+        let style = colour.stroke_width(2 * DOTS);
+        let line = || [PathElement::new(Vec::new(), style)];
+        let dashes = |piece: Vec<_>| DashedLineSeries::new(piece, DASH, DASH, style);
+        match (piece.as_slice(), at_right, curve.is_dashed) {
+            ([point], false, _) => drop(chart.draw_series(dot(*point))?),
+            ([point], true, _) => drop(chart.draw_secondary_series(dot(*point))?),
+            (_, false, false) => {
+                paths.push(written(piece.iter().map(|p| chart.backend_coord(p))));
+                chart.draw_series(line())?;
             }
+            (_, true, false) => {
+                let other = chart.borrow_secondary();
+                paths.push(written(piece.iter().map(|p| other.backend_coord(p))));
+                chart.draw_secondary_series(line())?;
+            }
+            (_, false, true) => drop(chart.draw_series(dashes(piece))?),
+            (_, true, true) => drop(chart.draw_secondary_series(dashes(piece))?),
         }
     }
     Ok(())

@@ -88,6 +88,22 @@ pub fn of_several<const N: usize>(x: [f64; N]) -> ([f64; N], [f64; N]) {
     (sines, cosines)
 }
 
+/// Finds sines and cosines of some angles, in parallel as [`of_several`]: of a number of them that
+/// is not known beforehand, which the compiler leaves a loop.
+#[inline(always)]
+pub fn sines_and_cosines(x: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
+    let all = x.iter().zip(sines).zip(cosines);
+    if x.iter().all(|x| x.abs() <= LARGEST_REDUCED) {
+        for ((x, sine), cosine) in all {
+            (*sine, *cosine) = near(*x);
+        }
+    } else {
+        for ((x, sine), cosine) in all {
+            (*sine, *cosine) = sin_cos(*x);
+        }
+    }
+}
+
 /// Returns n, with its last bits at the end, and r + ρ.
 #[inline(always)]
 fn reduced(x: f64) -> (u64, [f64; 2]) {
@@ -233,6 +249,11 @@ mod tests {
             let (sines, cosines) = of_several(x);
             assert_eq!(sines, x.map(|x| sin_cos(x).0));
             assert_eq!(cosines, x.map(|x| sin_cos(x).1));
+            for n in 0..=x.len() {
+                let (mut s, mut c) = ([0.0; 8], [0.0; 8]);
+                sines_and_cosines(&x[..n], &mut s[..n], &mut c[..n]);
+                assert_eq!((&s[..n], &c[..n]), (&sines[..n], &cosines[..n]));
+            }
         }
     }
 }

@@ -21,6 +21,7 @@ mod lanes;
 mod logarithm;
 mod power;
 
+pub(crate) use circle::sines_and_cosines;
 pub use dual::Dual;
 pub use germ::{Germ, ORDERS};
 pub use interval::Interval;

@@ -100,6 +100,7 @@ impl Branches {
     }
 
     /// Returns whether branches are held.
+    #[inline]
     pub(super) fn is_holding(&self) -> bool {
         self.holding
     }
@@ -189,12 +190,8 @@ impl Branches {
         self.loops.is_some()
     }
 
-    /// Evaluates the rates of the branches that are held; false where none are, or where they have
-    /// no value.
+    /// Evaluates the rates of the branches that are held; false where they have no value.
     pub(super) fn run_held(&mut self, numbers: &[f64], rates: &mut [f64]) -> bool {
-        if !self.holding {
-            return false;
-        }
         if self.is_sliding() && self.run_sliding(numbers, rates) {
             return true;
         }

@@ -10,12 +10,15 @@ use crate::scene::slopes::WIDTH;
 impl System {
     /// Returns all numbers at a state, projected onto the rows.
     pub fn row(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
-        let mut y = y.to_vec();
-        let kept = y.clone();
-        if self.put_on_rows(t, &mut y).is_err() {
-            y = kept;
+        let mut on_rows = std::mem::take(&mut self.stage);
+        on_rows.clear();
+        on_rows.extend_from_slice(y);
+        if self.put_on_rows(t, &mut on_rows).is_err() {
+            on_rows.copy_from_slice(y);
         }
-        self.row_of(t, &y)
+        let row = self.row_of(t, &on_rows);
+        self.stage = on_rows;
+        row
     }
 
     /// Returns all numbers at a state that is on the rows.
@@ -65,9 +68,12 @@ impl System {
 
     /// Takes over time and state, and solves the loops there; multipliers after the state are of no
     /// concern.
+    #[inline]
     pub(in crate::analysis) fn set(&mut self, t: f64, y: &[f64]) {
         self.scene.layout.set_state(&mut self.numbers, t, y);
-        self.fill(false);
+        if !self.recorded.external.is_empty() || self.recorded.loops.is_some() {
+            self.fill(false);
+        }
     }
 
     /// Solves the loops at the present numbers, after some of them have been changed.

@@ -186,9 +186,9 @@ impl Ode for System {
                 recoverable: true,
             });
         }
-        let l = self.scene.layout;
+        let n = self.scene.layout.n_y();
         self.recorded.run_rate(&self.numbers);
-        let (_, strength) = l.rates(&self.recorded.rate.values);
+        let strength = self.recorded.rate.values[n];
         if strength < APPROACHING_PIVOT && self.recorded.rows.projection.is_some() {
             self.singular_steps.see_approach(t, strength);
             if strength < NEAR_SINGULAR_PIVOT {
@@ -198,7 +198,7 @@ impl Ode for System {
         // number by number: a copy of all at once waits until the last of them has left the
         // processor, a tenth of the time of a pendulum. A sum is finite only if all its terms are
         let mut sum = 0.0;
-        let rates = l.rates(&self.recorded.rate.values).0;
+        let rates = &self.recorded.rate.values[..n];
         for (rate, &x) in ydot.iter_mut().zip(rates) {
             *rate = x;
             sum += x * 0.0;

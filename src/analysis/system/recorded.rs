@@ -157,8 +157,10 @@ impl Recorded {
 
     /// Evaluates the rates at a row of numbers, and how strong the rows are: of the branches that
     /// are held, else of those that the numbers say.
+    #[inline]
     pub fn run_rate(&mut self, numbers: &[f64]) {
-        if !self.branches.run_held(numbers, &mut self.rate.values) {
+        let branches = &mut self.branches;
+        if !branches.is_holding() || !branches.run_held(numbers, &mut self.rate.values) {
             self.rate.run(numbers);
         }
     }

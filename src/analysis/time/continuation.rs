@@ -331,7 +331,7 @@ impl Continuation {
         let side = sides.look(&system.numbers_at(t, &node.y));
         let turned = Sides::turned(here, &side);
         let met = !turned.is_empty();
-        if met && !sides.meet(system, (&turned, here), [&self.now, &node]) {
+        if met && !sides.meet(system, &turned, [(&self.now, here), (&node, &side)]) {
             return Tried::leaves(0, 0.5);
         }
         let most = SAFETY * LONGEST_WAY / way.max(driven).max(f64::MIN_POSITIVE);

@@ -186,7 +186,8 @@ pub(super) struct Accountant {
 }
 
 impl Accountant {
-    /// Adds an accepted step to the account.
+    /// Adds an accepted step to the account; returns the energy at its end where that was looked
+    /// at.
     pub(super) fn account(
         &mut self,
         flow: &mut EnergyFlow,
@@ -194,10 +195,8 @@ impl Accountant {
         method: &mut dyn Method<System>,
         step: &Step,
         (start, end): (f64, f64),
-    ) {
-        if flow.start.is_none() {
-            return;
-        }
+    ) -> Option<[f64; 2]> {
+        flow.start?;
         if system.does_work() {
             let clock = Moment::now();
             let ends = [step.t0, step.t1];
@@ -215,11 +214,12 @@ impl Accountant {
             flow.scale = flow.works.iter().fold(flow.scale, |m, w| m.max(w.abs()));
             flow.spent += clock.elapsed();
         }
-        if step.t1 >= self.due || step.t1 >= end {
-            self.due = step.t1 + (end - start) / LOOKS;
-            if let Some(energy) = system.energy(step.t1, method.y()) {
-                flow.look(energy);
-            }
+        if step.t1 < self.due && step.t1 < end {
+            return None;
         }
+        self.due = step.t1 + (end - start) / LOOKS;
+        let energy = system.energy(step.t1, method.y())?;
+        flow.look(energy);
+        Some(energy)
     }
 }

@@ -91,6 +91,8 @@ pub(super) struct Leg<'a> {
     pub(super) halved: usize,
     /// the state before the step, where there are rows   (n)
     pub(super) before: Vec<f64>,
+    /// a state at an output within the step   (n)
+    pub(super) between: Vec<f64>,
     /// angles whose turns are counted
     pub(super) counting: Counting,
     /// what tells branches of loops from each other; `None`: not needed so far
@@ -154,6 +156,7 @@ impl<'a> Leg<'a> {
             landing: limits.end,
             halved: 0,
             before: vec![0.0; if has_rows { size } else { 0 }],
+            between: Vec::new(),
             counting: Counting::default(),
             sides: None,
             last_look: None,
@@ -394,11 +397,14 @@ impl<'a> Leg<'a> {
     /// Adds an accepted step to the accounts of energy and of what limited steps.
     fn account(&mut self, method: &mut dyn Method<System>, step: &Step) {
         let duration = (self.limits.start, self.limits.end);
-        self.accountant
-            .account(&mut self.out.energy, self.system, method, step, duration);
+        let looked =
+            (self.accountant).account(&mut self.out.energy, self.system, method, step, duration);
         let (now, duration) = ((attempted(method), step.t1), duration.1 - duration.0);
         let system = &mut *self.system;
-        let kinetic = || system.energy(now.1, method.y()).map(|energy| energy[0]);
+        let kinetic = || {
+            let energy = looked.or_else(|| system.energy(now.1, method.y()))?;
+            Some(energy[0])
+        };
         self.out.runaway.see(now, duration, kinetic);
         if step.t1 >= self.limit && self.limit < self.limits.end {
             let limited = &mut self.out.limited;

@@ -18,8 +18,9 @@ impl Leg<'_> {
             .outputs
             .get(self.out.t.len())
             .filter(|&&t| t < step.t1)?;
-        let mut state = method.y().to_vec();
-        let found = (self.system).aside(|system| method.interpolate(system, t, &mut state));
+        let state = &mut self.between;
+        state.resize(method.y().len(), 0.0);
+        let found = (self.system).aside(|system| method.interpolate(system, t, state));
         let failed = found.is_err();
         (failed && t > step.t0).then_some(t)
     }
@@ -27,7 +28,8 @@ impl Leg<'_> {
     /// Puts out the states at output times inside an accepted step, and up to `until` just behind
     /// it; counts turns up to its end.
     pub(super) fn emit(&mut self, method: &mut dyn Method<System>, step: &Step, until: f64) {
-        let mut state = method.y().to_vec();
+        let mut state = std::mem::take(&mut self.between);
+        state.resize(method.y().len(), 0.0);
         self.begin_counting(method, step);
         while let Some(&t) = self.outputs.get(self.out.t.len()) {
             if t > until {
@@ -49,6 +51,7 @@ impl Leg<'_> {
             }
             self.out.push(t, row);
         }
+        self.between = state;
         self.count_turns(method, step, step.t1);
     }
 

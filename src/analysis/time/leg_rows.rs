@@ -99,7 +99,7 @@ impl Leg<'_> {
             let turned = Sides::turned(from, to);
             match turned.is_empty() {
                 true => sides.stands([from, to], [a.t, b.t], patience),
-                false => !sides.meet(self.system, (&turned, from), [a, b]),
+                false => !sides.meet(self.system, &turned, [(a, from), (b, to)]),
             }
         });
         self.sides = Some(sides);

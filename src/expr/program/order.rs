@@ -407,8 +407,12 @@ impl<'a> Walk<'a> {
     fn place(&mut self, v: Value) {
         self.placed[v.index()] = true;
         self.items.push(Item::Node(v));
+        let node = &self.builder.nodes[v.index()];
+        if !may_have_partners(node) {
+            return;
+        }
         let here = self.open.last().copied().unwrap_or(ALWAYS);
-        let key = group(&self.builder.nodes[v.index()]).unwrap_or(v);
+        let key = group(node).unwrap_or(v);
         if let Some(partners) = self.partners.get(&key) {
             for &partner in partners.iter().rev() {
                 let guard = self.guards.of[partner.index()];
@@ -461,6 +465,14 @@ fn group(node: &Node) -> Option<Value> {
         Node::Partial { call, .. } => Some(call),
         _ => None,
     }
+}
+
+/// Returns whether an operation may yield other nodes together with this one.
+fn may_have_partners(node: &Node) -> bool {
+    matches!(
+        node,
+        Node::Unary(UnaryOp::Sin | UnaryOp::Cos, _) | Node::Call { .. } | Node::Partial { .. }
+    )
 }
 
 /// Returns needed nodes that one operation yields together.

@@ -11,6 +11,7 @@ mod locked;
 mod passes;
 mod selection;
 mod sides;
+mod turning;
 mod valley;
 
 pub use locked::{Lock, locked};

@@ -8,7 +8,7 @@
 
 use super::sides::GAP;
 use super::valley::Valley;
-use super::{Gradients, active, gradients, margin, norm, place, weakest};
+use super::{Gradients, Rows, active, gradients, margin, norm, place, weakest};
 use crate::analysis::start::assemble;
 use crate::analysis::system::System;
 use crate::expr::program::{Program, Work};
@@ -56,7 +56,7 @@ pub fn passes(scene: Configured<'_>, system: &System, states: &[Option<Vec<f64>>
     if states.is_empty() {
         return Vec::new();
     }
-    let Some(search) = Search::new(scene, system, states) else {
+    let Some((search, mut measured)) = Search::new(scene, system, states) else {
         return Vec::new();
     };
     let most = match scene.layout.n_v {
@@ -70,7 +70,7 @@ pub fn passes(scene: Configured<'_>, system: &System, states: &[Option<Vec<f64>>
     let mut found: Vec<Pass> = Vec::new();
     for run in states.split(Option::is_none) {
         let run: Vec<&Vec<f64>> = run.iter().flatten().collect();
-        let mut looks = search.refined(&run);
+        let mut looks = search.refined(&run, measured.by_ref().take(run.len()));
         for k in 0..looks.len() {
             if !search.is_suspect(&mut looks, k) {
                 continue;
@@ -160,21 +160,28 @@ struct Search<'s> {
 }
 
 impl<'s> Search<'s> {
-    /// Measures the rows at the states; `None` where no row takes part.
-    fn new(scene: Configured<'s>, system: &'s System, states: &[Option<Vec<f64>>]) -> Option<Self> {
+    /// Prepares the search, with the rows at each state, by loops; `None` where no row takes part.
+    fn new(
+        scene: Configured<'s>,
+        system: &'s System,
+        states: &[Option<Vec<f64>>],
+    ) -> Option<(Self, std::vec::IntoIter<Vec<Rows>>)> {
         let gradients = Gradients::of(scene, system)?;
         let mut usual = vec![0.0_f64; scene.rows.len()];
-        for n in states.iter().flatten() {
-            for (l, rows) in gradients.loops.iter().zip(gradients.at(n)) {
-                for (&r, row) in l.rows.iter().zip(rows.iter()) {
-                    usual[r] = usual[r].max(norm(row));
-                }
+        let states = states.iter().flatten();
+        let measured: Vec<Vec<Rows>> = states.map(|n| gradients.at(n)).collect();
+        for (l, rows) in measured
+            .iter()
+            .flat_map(|all| gradients.loops.iter().zip(all))
+        {
+            for (&r, row) in l.rows.iter().zip(rows.iter()) {
+                usual[r] = usual[r].max(norm(row));
             }
         }
         for u in usual.iter_mut().filter(|u| **u == 0.0) {
             *u = 1.0;
         }
-        Some(Self {
+        let search = Self {
             scene,
             gradients,
             rows: active(scene),
@@ -185,7 +192,8 @@ impl<'s> Search<'s> {
                 && system.projects_positions_alone())
             .then_some(system),
             copy: OnceCell::new(),
-        })
+        };
+        Some((search, measured.into_iter()))
     }
 
     /// Returns bounds of the margin of a state that is not closed, once it is: from the violation
@@ -222,8 +230,12 @@ impl<'s> Search<'s> {
     /// Returns the least that any row of a loop determines beyond the others at a state, over its
     /// usual length: zero where they are dependent.
     fn margin(&self, numbers: &[f64]) -> f64 {
-        let loops = self.gradients.loops.iter();
-        let all = loops.zip(self.gradients.at(numbers));
+        self.margin_of(self.gradients.at(numbers))
+    }
+
+    /// Returns the margin of rows, by loops.
+    fn margin_of(&self, rows: Vec<Rows>) -> f64 {
+        let all = self.gradients.loops.iter().zip(rows);
         all.map(|(l, mut rows)| {
             for (row, &r) in rows.iter_mut().zip(&l.rows) {
                 row.iter_mut().for_each(|x| *x /= self.usual[r]);
@@ -291,8 +303,12 @@ impl<'s> Search<'s> {
 
     /// Returns states so close to each other that no angle changes much between them, each with
     /// its margin. Those between two others are still to be closed onto the rows where these are
-    /// anything like dependent.
-    fn refined<'r>(&self, run: &[&'r Vec<f64>]) -> Vec<Look<'r>> {
+    /// anything like dependent. `measured`: the rows at the states of the run.
+    fn refined<'r>(
+        &self,
+        run: &[&'r Vec<f64>],
+        measured: impl Iterator<Item = Vec<Rows>>,
+    ) -> Vec<Look<'r>> {
         let (scene, l) = (self.scene, self.scene.layout);
         let turning: Vec<usize> = (scene.coordinates.iter().zip(&scene.freedoms))
             .filter(|(c, _)| c.angular)
@@ -303,17 +319,17 @@ impl<'s> Search<'s> {
             speeds.fold(0.0, f64::max)
         };
         let mut all = Vec::new();
-        let closed = |n: &[f64]| Look {
+        let mut closed = run.iter().zip(measured).map(|(n, rows)| Look {
             numbers: n.to_vec(),
-            margin: [self.margin(n); 2],
+            margin: [self.margin_of(rows); 2],
             open: None,
-        };
+        });
         for pair in run.windows(2) {
             let (a, b): (&'r [f64], &'r [f64]) = (pair[0], pair[1]);
             let h = b[Layout::TIME] - a[Layout::TIME];
             let turn = h * speed(a).max(speed(b));
             let pieces = (turn / MAX_TURN).ceil().clamp(1.0, MAX_PIECES) as usize;
-            all.push(closed(a));
+            all.extend(closed.next());
             for k in 1..pieces {
                 let s = k as f64 / pieces as f64;
                 let numbers = self.between(a, b, s, false);
@@ -329,7 +345,7 @@ impl<'s> Search<'s> {
                 });
             }
         }
-        all.extend(run.last().map(|n| closed(n)));
+        all.extend(closed);
         all
     }
 

@@ -8,30 +8,18 @@
 //! While the rows stay independent no eigenvalue of B vanishes; where a combination of rows
 //! vanishes in passing, one goes through zero and is negative afterwards. So two states on branches
 //! that only come near each other are told from two on one branch, however long the step was. Each
-//! loop (rows that share coordinates) has a B of its own.
+//! loop (rows that share coordinates) has a B of its own, judged in `turning.rs`.
 
 use super::passes::DEPENDENT_THERE;
-use super::selection::{self, Rows};
+use super::selection::{self, Rows, norm};
+use super::turning::Beginning;
 use super::valley::Valley;
 use crate::analysis::system::{RowGradients, System};
 use crate::analysis::time::states::{Cubic, Node};
 use crate::expr::program::{Program, Work};
-use crate::numeric::eigenvalues::eigenvalues;
-use crate::numeric::envelope;
 use crate::scene::programs::weights;
-use nalgebra::{Cholesky, DMatrix, DVectorView, Dyn};
-use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
-/// Rows of the largest loop whose eigenvalues are found; of a larger one signs of determinants must
-/// do.
-const MAX_EIGENVALUES: usize = 60;
-/// Parts s of the way from G₀ A G₀ᵀ to G₁ A G₀ᵀ at which the signs of determinants are found: an
-/// eigenvalue μ < 0 of B changes the sign at 1/(1 − μ), so that two are told apart.
-const PARTS_OF_WAY: [f64; 8] = [0.35, 0.5, 0.65, 0.75, 0.84, 0.91, 0.96, 1.0];
-/// Imaginary part of an eigenvalue that counts as real, over its real part: a turn of the rows by
-/// 150° is not the passage of a singular position.
-const NEARLY_REAL: f64 = 0.5;
 /// Violation of a row, relative to what counts as one, beyond which there is no state.
 pub(super) const GAP: f64 = 1e-12;
 /// Failures to find a state after which there is none: one very near the position may be hard to
@@ -71,7 +59,7 @@ pub(super) struct Loop {
 /// The gradients of the rows at one state, by loops: rows against what counts as one, columns in
 /// the metric of projections.
 #[derive(Clone, Debug, Default)]
-pub struct Side(Vec<DMatrix<f64>>);
+pub struct Side(Vec<Rows>);
 
 /// Watch that finds out on which side of singular positions states are.
 #[derive(Debug)]
@@ -124,14 +112,14 @@ impl Sides {
     /// Evaluates the gradients at all numbers of a state.
     pub fn look(&mut self, numbers: &[f64]) -> Side {
         self.program.run(numbers, &mut self.work, &mut self.values);
-        let size = |l: &Loop| DMatrix::zeros(l.rows.len(), l.coordinates.len());
-        let mut side: Vec<DMatrix<f64>> = self.loops.iter().map(size).collect();
+        let size = |l: &Loop| Rows::zeros(l.rows.len(), l.coordinates.len());
+        let mut side: Vec<Rows> = self.loops.iter().map(size).collect();
         for (&(k, i, j, factor), x) in self.places.iter().zip(&self.values) {
-            side[k][(i, j)] += factor * x;
+            side[k].row_mut(i)[j] += factor * x;
         }
         for (usual, block) in self.usual.iter_mut().zip(&side) {
-            for (usual, row) in usual.iter_mut().zip(block.row_iter()) {
-                *usual = usual.max(row.norm());
+            for (usual, row) in usual.iter_mut().zip(block.iter()) {
+                *usual = usual.max(norm(row));
             }
         }
         Side(side)
@@ -164,11 +152,10 @@ impl Sides {
     /// its usual length: zero where rows are dependent.
     fn margin(&self, loops: &[usize], side: &Side) -> f64 {
         let of = |&k: &usize| {
-            let block = &side.0[k];
-            let mut rows = Rows::zeros(block.nrows(), block.ncols());
-            for (i, (row, usual)) in rows.iter_mut().zip(&self.usual[k]).enumerate() {
+            let mut rows = side.0[k].clone();
+            for (row, usual) in rows.iter_mut().zip(&self.usual[k]) {
                 let usual = usual.max(f64::MIN_POSITIVE);
-                (row.iter_mut().enumerate()).for_each(|(j, x)| *x = block[(i, j)] / usual);
+                row.iter_mut().for_each(|x| *x /= usual);
             }
             selection::margin(rows)
         };
@@ -176,18 +163,17 @@ impl Sides {
     }
 
     /// Finds out whether two states between which loops have turned are on branches that meet:
-    /// whether rows are dependent wherever a combination of them turns between the two. `from`: the
-    /// rows at the first.
+    /// whether rows are dependent wherever a combination of them turns between the two, whose rows
+    /// are known.
     pub fn meet(
         &mut self,
         system: &mut System,
-        (loops, from): (&[usize], &Side),
-        [a, b]: [&Node; 2],
+        loops: &[usize],
+        [(a, from), (b, to)]: [(&Node, &Side); 2],
     ) -> bool {
         let (mut a, mut from) = (a.clone(), from.clone());
-        let to = self.look(&system.numbers_at(b.t, &b.y));
         for _ in 0..MAX_MEETINGS {
-            let ends = [(&a, &from), (b, &to)];
+            let ends = [(&a, &from), (b, to)];
             let Some(meeting) = self.first_meeting(system, loops, ends) else {
                 return false;
             };
@@ -306,9 +292,11 @@ impl Sides {
     /// usual length.
     fn change(&self, loops: &[usize], [from, to]: [&Side; 2]) -> f64 {
         let of = |&k: &usize| {
-            let rows = (from.0[k].row_iter().zip(to.0[k].row_iter())).zip(&self.usual[k]);
-            let squares =
-                rows.map(|((a, b), usual)| ((b - a).norm() / usual.max(f64::MIN_POSITIVE)).powi(2));
+            let rows = (from.0[k].iter().zip(to.0[k].iter())).zip(&self.usual[k]);
+            let squares = rows.map(|((a, b), usual)| {
+                let square: f64 = a.iter().zip(b).map(|(a, b)| (b - a) * (b - a)).sum();
+                square / usual.max(f64::MIN_POSITIVE).powi(2)
+            });
             squares.sum::<f64>().sqrt()
         };
         loops.iter().map(of).fold(0.0, f64::max)
@@ -343,125 +331,4 @@ pub(super) fn loops(rows: &[usize], entries: &[(usize, usize)], n_v: usize) -> V
         }
     }
     loops.into_values().collect()
-}
-
-/// The rows of a loop at the state from which others are judged.
-struct Beginning<'a> {
-    rows: &'a DMatrix<f64>,
-    /// G₀ A G₀ᵀ
-    square: OnceCell<DMatrix<f64>>,
-    /// its factor, where it is positive definite
-    factor: OnceCell<Option<Cholesky<f64, Dyn>>>,
-}
-
-impl<'a> Beginning<'a> {
-    fn at(rows: &'a DMatrix<f64>) -> Self {
-        Self {
-            rows,
-            square: OnceCell::new(),
-            factor: OnceCell::new(),
-        }
-    }
-
-    /// Returns whether a combination of the rows has gone through zero from here to another state.
-    fn has_turned(&self, to: &DMatrix<f64>) -> bool {
-        let n = self.rows.nrows();
-        let mixed = products(self.rows, to);
-        let twice = DMatrix::from_fn(n, n, |i, j| mixed[(i, j)] + mixed[(j, i)]);
-        let square = || self.square.get_or_init(|| products(self.rows, self.rows));
-        if n > MAX_EIGENVALUES {
-            return envelope::is_positive(square())
-                && !envelope::is_positive(&twice)
-                && changes_sign(square(), &mixed);
-        }
-        // B is similar to L⁻¹ G₁ A G₀ᵀ L⁻ᵀ, whose eigenvalues lie in its field of values
-        if twice.cholesky().is_some() {
-            return false;
-        }
-        let factor = self.factor.get_or_init(|| square().clone().cholesky());
-        let Some(factor) = factor else {
-            return false;
-        };
-        let b = factor.solve(&mixed);
-        if b.iter().any(|x| !x.is_finite()) {
-            return false;
-        }
-        has_negative(b).unwrap_or_else(|| changes_sign(square(), &mixed))
-    }
-}
-
-/// Returns whether the determinant is negative somewhere on the way from a matrix whose own is
-/// positive to another.
-fn changes_sign(from: &DMatrix<f64>, to: &DMatrix<f64>) -> bool {
-    let there = |s: &f64| from.scale(1.0 - s) + to.scale(*s);
-    let mut parts = PARTS_OF_WAY.iter();
-    parts.any(|s| envelope::has_negative_determinant(&there(s)))
-}
-
-/// Returns whether a matrix has an eigenvalue that is negative and nearly real; `None`: they could
-/// not be found.
-fn has_negative(b: DMatrix<f64>) -> Option<bool> {
-    if b.nrows() == 2 {
-        let mean = 0.5 * b.trace();
-        let spread = mean * mean - b.determinant();
-        let root = spread.abs().sqrt();
-        return Some(match spread < 0.0 {
-            true => mean < 0.0 && root <= NEARLY_REAL * mean.abs(),
-            false => mean - root < 0.0,
-        });
-    }
-    let rows = b.row_iter().map(|row| row.iter().copied().collect());
-    let is_negative = |&(re, im): &(f64, f64)| re < 0.0 && im.abs() <= NEARLY_REAL * re.abs();
-    eigenvalues(rows.collect()).map(|all| all.iter().any(is_negative))
-}
-
-/// Returns `A Bᵀ` of two matrices with many zeros.
-fn products(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
-    fn entries<'c>(
-        column: &'c DVectorView<'_, f64>,
-    ) -> impl Iterator<Item = (usize, f64)> + use<'c> {
-        column.iter().copied().enumerate().filter(|e| e.1 != 0.0)
-    }
-    let mut out = DMatrix::zeros(a.nrows(), b.nrows());
-    let mut others = Vec::with_capacity(b.nrows());
-    for (a, b) in a.column_iter().zip(b.column_iter()) {
-        others.clear();
-        others.extend(entries(&b));
-        for (i, x) in entries(&a) {
-            others.iter().for_each(|&(j, y)| out[(i, j)] += x * y);
-        }
-    }
-    out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rows_that_turn_right_round_have_gone_through_zero_and_others_have_not() {
-        let turn = |degrees: f64| {
-            let (sine, cosine) = degrees.to_radians().sin_cos();
-            DMatrix::from_row_slice(2, 2, &[cosine, -sine, sine, cosine])
-        };
-        let turns = [0.0, 60.0, 100.0, 149.0, 160.0, 180.0].map(|d| has_negative(turn(d)));
-        assert_eq!(turns, [false, false, false, false, true, true].map(Some));
-        let scaled = |x: f64| DMatrix::from_row_slice(2, 2, &[1.0, 5.0, 0.0, x]);
-        assert_eq!(
-            [-0.1, 0.1].map(|x| has_negative(scaled(x))),
-            [Some(true), Some(false)]
-        );
-        let one = DMatrix::identity(2, 2);
-        assert_eq!(
-            [-0.1, 0.1].map(|x| changes_sign(&one, &scaled(x))),
-            [true, false]
-        );
-        // the same beside a third row
-        let beside = |b: DMatrix<f64>| b.insert_row(2, 0.0).insert_column(2, 0.0);
-        for degrees in [60.0, 100.0, 160.0] {
-            let mut b = beside(turn(degrees));
-            b[(2, 2)] = 1.0;
-            assert_eq!(has_negative(b), has_negative(turn(degrees)), "{degrees}°");
-        }
-    }
 }

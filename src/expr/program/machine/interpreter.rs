@@ -80,6 +80,7 @@ impl Steps {
                     &mut frame[..core.size as usize],
                 );
             }
+            Step::Circle { number } => self.circles[number as usize].perform(frame),
             Step::Prepared { number } => self.prepared[number as usize].perform(frame),
             Step::Input { .. } | Step::Unless { .. } | Step::Branch { .. } | Step::Go { .. } => {
                 unreachable!("inputs and jumps belong to the run")

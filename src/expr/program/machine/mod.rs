@@ -151,7 +151,7 @@ impl Machine {
     pub(super) fn extras(&self) -> impl Iterator<Item = f64> {
         self.steps().extras.iter().map(|extra| match *extra {
             Extra::Constant(c) => c,
-            Extra::Between => f64::NAN,
+            Extra::Between | Extra::Ahead => f64::NAN,
         })
     }
 

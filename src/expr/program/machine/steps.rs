@@ -8,6 +8,7 @@
 use super::super::code::Core;
 use super::super::operation::{BinaryOp, Comparison, UnaryOp};
 use super::prepared::PreparedCall;
+use crate::scalar::sines_and_cosines;
 use std::collections::BTreeSet;
 
 /// One step; operands and results are slots, jumps are numbers of steps.
@@ -28,6 +29,8 @@ pub(super) enum Step {
     },
     /// sin a → sine, cos a → cosine
     SineCosine { a: u32, sine: u32, cosine: u32 },
+    /// sines and cosines of several angles at once
+    Circle { number: u32 },
     /// a ? b : yes, no → to
     Select {
         comparison: Comparison,
@@ -66,6 +69,63 @@ pub(super) enum Extra {
     Constant(f64),
     /// holds a result between the steps of one instruction
     Between,
+    /// holds a result until it is copied to where it belongs
+    Ahead,
+}
+
+/// Angles whose sines and cosines one step finds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Circle {
+    /// how many there are
+    n: u8,
+    angles: [u32; N_ANGLES],
+    /// sine and cosine of each
+    results: [[u32; 2]; N_ANGLES],
+}
+
+/// Angles of a step, at most.
+pub(super) const N_ANGLES: usize = 8;
+/// Angles that a processor finds at once.
+const N_AT_ONCE: usize = 4;
+
+impl Circle {
+    /// Holds angles, each with the slots of sine and cosine, up to [`N_ANGLES`].
+    pub(super) fn of(all: &[(u32, [u32; 2])]) -> Self {
+        let n = all.len().min(N_ANGLES);
+        let mut circle = Self {
+            n: n as u8,
+            angles: [0; N_ANGLES],
+            results: [[0; 2]; N_ANGLES],
+        };
+        for (k, &(angle, results)) in all[..n].iter().enumerate() {
+            (circle.angles[k], circle.results[k]) = (angle, results);
+        }
+        circle
+    }
+
+    pub(super) fn angles(&self) -> &[u32] {
+        &self.angles[..usize::from(self.n).min(N_ANGLES)]
+    }
+
+    pub(super) fn results(&self) -> &[[u32; 2]] {
+        &self.results[..usize::from(self.n).min(N_ANGLES)]
+    }
+
+    /// Finds sines and cosines, the same bits as one by one.
+    #[inline(always)]
+    pub(super) fn perform(&self, frame: &mut [f64]) {
+        let [mut angles, mut sines, mut cosines] = [[0.0; N_ANGLES]; 3];
+        for (angle, &slot) in angles.iter_mut().zip(self.angles()) {
+            *angle = frame[slot as usize];
+        }
+        // as many as are found at once, or a multiple
+        let n = self.angles().len().next_multiple_of(N_AT_ONCE);
+        sines_and_cosines(&angles[..n], &mut sines[..n], &mut cosines[..n]);
+        for (k, &[sine, cosine]) in self.results().iter().enumerate() {
+            frame[sine as usize] = sines[k];
+            frame[cosine as usize] = cosines[k];
+        }
+    }
 }
 
 /// The steps of a program.
@@ -73,6 +133,7 @@ pub(super) enum Extra {
 pub(super) struct Steps {
     pub(super) steps: Vec<Step>,
     pub(super) prepared: Vec<PreparedCall>,
+    pub(super) circles: Vec<Circle>,
     /// number of registers of the straight code
     pub(super) n_registers: u32,
     /// what stands behind them
@@ -98,6 +159,7 @@ impl Step {
             | Step::Unary { .. }
             | Step::Binary { .. }
             | Step::SineCosine { .. }
+            | Step::Circle { .. }
             | Step::Select { .. }
             | Step::Instruction { .. }
             | Step::Prepared { .. } => ([0; 3], 0),
@@ -114,6 +176,7 @@ impl Step {
             Step::Select { a, b, yes, no, .. } => ([a, b, yes, no], 4),
             Step::Branch { selector, .. } => ([selector, 0, 0, 0], 1),
             Step::Input { .. }
+            | Step::Circle { .. }
             | Step::Instruction { .. }
             | Step::Prepared { .. }
             | Step::Go { .. } => ([0; 4], 0),
@@ -129,7 +192,8 @@ impl Step {
             | Step::Binary { to, .. }
             | Step::Select { to, .. } => ([to, 0], 1),
             Step::SineCosine { sine, cosine, .. } => ([sine, cosine], 2),
-            Step::Instruction { .. }
+            Step::Circle { .. }
+            | Step::Instruction { .. }
             | Step::Prepared { .. }
             | Step::Unless { .. }
             | Step::Branch { .. }
@@ -142,6 +206,15 @@ impl Steps {
     /// Returns how many slots a frame has.
     pub(super) fn n_slots(&self) -> usize {
         self.n_registers as usize + self.extras.len()
+    }
+
+    /// Returns which steps are jumped to; the last element stands for the end.
+    pub(super) fn jumped_to(&self) -> Vec<bool> {
+        let mut is_target = vec![false; self.steps.len() + 1];
+        for target in self.steps.iter().flat_map(Step::targets) {
+            is_target[target as usize] = true;
+        }
+        is_target
     }
 }
 
@@ -170,6 +243,13 @@ impl Steps {
                     Some(call) => {
                         let results = call.slopes.iter().chain([&call.value]).flatten();
                         sound &= call.variables.iter().chain(results).all(is_slot);
+                    }
+                    None => sound = false,
+                },
+                Step::Circle { number } => match self.circles.get(number as usize) {
+                    Some(circle) => {
+                        let results = circle.results().as_flattened();
+                        sound &= circle.angles().iter().chain(results).all(is_slot);
                     }
                     None => sound = false,
                 },

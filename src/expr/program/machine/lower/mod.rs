@@ -2,6 +2,7 @@
 //! prepared.
 
 mod calls;
+mod circles;
 mod formula;
 mod results;
 mod sides;
@@ -38,13 +39,17 @@ pub(super) fn lower(core: &Core) -> Steps {
             .map_or(core.code.len(), |(mark, _)| mark.at as usize);
         k += lowering.instructions(k, end);
     }
-    Steps {
-        steps: lowering.steps,
-        prepared: lowering.prepared,
-        n_registers: core.size,
-        extras: lowering.extras,
-        asked: lowering.asked,
-    }
+    circles::gathered(
+        core,
+        Steps {
+            steps: lowering.steps,
+            prepared: lowering.prepared,
+            circles: Vec::new(),
+            n_registers: core.size,
+            extras: lowering.extras,
+            asked: lowering.asked,
+        },
+    )
 }
 
 /// Returns whether the steps of a core are those of another core of its shape: where the numbers

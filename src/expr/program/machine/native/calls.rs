@@ -4,7 +4,7 @@
 use super::super::super::code::Core;
 use super::super::super::operation::{BinaryOp, UnaryOp};
 use super::super::prepared::PreparedCall;
-use super::super::steps::{Step, Steps};
+use super::super::steps::{Circle, Step, Steps};
 use crate::expr::functions::prepared::Prepared;
 use crate::scalar::{Exponent, Scalar};
 use std::sync::Arc;
@@ -25,6 +25,7 @@ pub(super) struct CalledStep {
 enum Operation {
     Instruction { number: u32, core: Arc<Core> },
     Prepared(PreparedCall),
+    Circle(Circle),
 }
 
 impl CalledStep {
@@ -38,6 +39,7 @@ impl CalledStep {
             Step::Prepared { number } => {
                 Operation::Prepared(steps.prepared[number as usize].clone())
             }
+            Step::Circle { number } => Operation::Circle(steps.circles[number as usize]),
             Step::Input { .. }
             | Step::Copy { .. }
             | Step::Unary { .. }
@@ -98,6 +100,7 @@ impl CalledStep {
         let function: unsafe extern "sysv64" fn(*const CalledStep, *mut f64) = match &self.operation
         {
             Operation::Instruction { .. } => perform,
+            Operation::Circle(_) => of_circle(),
             Operation::Prepared(call) => match call.function {
                 Havsin => made_for!(Havsin),
                 Forcos => made_for!(Forcos),
@@ -119,7 +122,7 @@ impl CalledStep {
 
     fn has_slopes(&self) -> bool {
         match &self.operation {
-            Operation::Instruction { .. } => false,
+            Operation::Instruction { .. } | Operation::Circle(_) => false,
             Operation::Prepared(call) => call.has_slopes(),
         }
     }
@@ -140,6 +143,24 @@ unsafe extern "sysv64" fn perform(called: *const CalledStep, frame: *mut f64) {
             core.perform(&core.code[*number as usize], frame);
         }
         Operation::Prepared(call) => call.perform(frame),
+        Operation::Circle(circle) => circle.perform(frame),
+    }
+}
+
+/// Returns the function for several angles.
+fn of_circle() -> unsafe extern "sysv64" fn(*const CalledStep, *mut f64) {
+    #[target_feature(enable = "avx2")]
+    #[allow(unsafe_code)]
+    unsafe extern "sysv64" fn with_avx(called: *const CalledStep, frame: *mut f64) {
+        // SAFETY: as for `perform`
+        let (called, frame) = unsafe { referenced(called, frame) };
+        if let Operation::Circle(circle) = &called.operation {
+            circle.perform(frame);
+        }
+    }
+    match is_x86_feature_detected!("avx2") {
+        true => with_avx,
+        false => perform,
     }
 }
 

@@ -19,15 +19,6 @@ pub(super) struct Next {
     pub(super) results: [u32; 2],
 }
 
-/// Returns which steps are jumped to; the last element stands for the end.
-pub(super) fn targets(steps: &Steps) -> Vec<bool> {
-    let mut is_target = vec![false; steps.steps.len() + 1];
-    for target in steps.steps.iter().flat_map(Step::targets) {
-        is_target[target as usize] = true;
-    }
-    is_target
-}
-
 /// Returns for each step when its slots are needed again.
 ///
 /// A value that is read behind a jump may be needed; slots for what lies between the steps of one
@@ -68,6 +59,13 @@ pub(super) fn needs(steps: &Steps, core: &Core, is_target: &[bool]) -> Vec<Next>
         match *step {
             Step::Instruction { number } => {
                 core.operands(&core.code[number as usize], |slot| future.read(slot, k));
+            }
+            Step::Circle { number } => {
+                let circle = &steps.circles[number as usize];
+                for &slot in circle.results().as_flattened() {
+                    future.noted[slot as usize] = (future.stretch, NEVER);
+                }
+                (circle.angles().iter()).for_each(|&slot| future.read(slot, k));
             }
             Step::Prepared { number } => {
                 let variables = steps.prepared[number as usize].variables;

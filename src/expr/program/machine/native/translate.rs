@@ -11,7 +11,7 @@ use super::super::super::operation::{BinaryOp, Comparison, UnaryOp};
 use super::super::steps::{Step, Steps};
 use super::assembler::{self, Assembler, Instruction, Jump, Place, Relation, When, Xmm};
 use super::calls;
-use super::needs::{NEVER, Next, needs, targets};
+use super::needs::{NEVER, Next, needs};
 use crate::expr::program::hashing::HashMap;
 
 /// Registers that hold values of slots; the two behind them are for what lies between two
@@ -60,7 +60,10 @@ fn is_call(step: &Step) -> bool {
         Step::Binary { op, .. } => {
             instruction(*op).is_none() && !matches!(op, BinaryOp::Along | BinaryOp::Kept)
         }
-        Step::SineCosine { .. } | Step::Instruction { .. } | Step::Prepared { .. } => true,
+        Step::SineCosine { .. }
+        | Step::Circle { .. }
+        | Step::Instruction { .. }
+        | Step::Prepared { .. } => true,
         Step::Input { .. }
         | Step::Copy { .. }
         | Step::Select { .. }
@@ -89,7 +92,7 @@ fn instruction(op: BinaryOp) -> Option<Instruction> {
 
 /// Returns the code of these steps; `calls` are the steps that are called, by number.
 pub(super) fn translate(steps: &Steps, core: &Core, calls: &HashMap<u32, Call>) -> Vec<u8> {
-    let is_target = targets(steps);
+    let is_target = steps.jumped_to();
     let needs = needs(steps, core, &is_target);
     let mut translation = Translation {
         assembler: Assembler::new(steps.steps.iter().any(is_call)),
@@ -170,7 +173,7 @@ impl Translation<'_> {
                 no,
                 to,
             } => self.select(comparison, [a, b, yes, no], to, next),
-            Step::Instruction { .. } | Step::Prepared { .. } => {
+            Step::Circle { .. } | Step::Instruction { .. } | Step::Prepared { .. } => {
                 self.store_all();
                 self.forget();
                 let Call { function, argument } = self.calls[&k];
