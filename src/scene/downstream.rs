@@ -7,8 +7,7 @@
 //!
 //! Nothing comes back, so that the mechanism moves as if they were not there. They stand last among
 //! the further states, are no unknowns of its method, and are integrated beside it in steps of
-//! their own. In statics, linear systems and kinematics they
-//! are states like all others.
+//! their own. In statics, linear systems and kinematics they are states like all others.
 //!
 //! A state is downstream if no force, motion, constraint, sensor, sampler, delay or closure reads
 //! it, directly or through VARIABLEs, ARRAYs and other states, and if its equation is explicit and

@@ -170,6 +170,23 @@ fn integrals_of_a_speed_are_displacements_through_stops_and_loops() {
     }
 }
 
+#[test]
+fn the_impulse_of_a_force_that_jumps_and_holds_is_the_change_of_momentum() {
+    let text = "PART/2, MASS=1, CM=20, VX=1\nMARKER/20, PART=2, REULER=90D,90D,0\nMARKER/11, PART=1, REULER=90D,90D,0\n\
+                JOINT/1, TRANSLATIONAL, I=20, J=11\n\
+                SFORCE/1, TRANSLATION, ACTIONONLY, I=20, J=11, FUNCTION=-2*SIGN(1,VX(20,11))+3*SIN(4*TIME)\n\
+                DIFF/1, IC=1, FUNCTION=SFORCE(1,0,2,0)\n";
+    for method in ["AUTO", "RADAU5"] {
+        for error in [1e-4, 1e-6, 1e-8] {
+            let mut s = session_by(text, &["DIF(1)", "VX(20)"], method, error);
+            go(&mut s, Analysis::Dynamic, 2.0, 40);
+            let momenta = values(&s, "DIF(1)").iter().zip(values(&s, "VX(20)"));
+            let worst = momenta.map(|(i, v)| (i - v).abs()).fold(0.0, f64::max);
+            assert!(worst < 100.0 * error, "{method} at {error:e}: {worst:e}");
+        }
+    }
+}
+
 /// The low-pass `ẋ = k (u − x)` of u = cos ωt from x₀, and its integral from 0.
 fn filtered(omega: f64, k: f64, x0: f64, t: f64) -> [f64; 2] {
     let scale = k / (k * k + omega * omega);
