@@ -104,6 +104,11 @@ const KINDS: &[Ballast] = &[
         None,
     ),
     (
+        "stiff filters",
+        |k| format!("DIFF/{k}, IC=0, FUNCTION={k}E3*(ACCX(20)-DIF({k}))"),
+        None,
+    ),
+    (
         "sensors",
         |k| {
             format!(

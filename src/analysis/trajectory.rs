@@ -13,6 +13,8 @@ pub enum Ended {
     Interrupted,
     /// the method could not go on
     Stop(Stop),
+    /// states downstream of the mechanism could not go on
+    Downstream(Stop),
     /// a sensor asked: its place in [`Scene::sensors`](crate::scene::Scene::sensors)
     Sensor(usize),
     /// a contact of curves ends
@@ -107,6 +109,9 @@ pub struct Trajectory {
     pub means: BTreeMap<usize, Vec<(f64, Vec<f64>)>>,
     /// what it cost
     pub stats: Stats,
+    /// the method that worked last for the states downstream of the mechanism, and how many steps
+    /// they took; `None`: there are none
+    pub downstream: Option<(&'static str, usize)>,
     /// the methods that worked, in order, with the time at which each took over, and why
     pub methods: Vec<(f64, String, Takeover)>,
     /// number of switches that were located

@@ -157,6 +157,7 @@ fn as_json(o: &Outline) -> Value {
         "forest": forest,
         "welded": o.welded,
         "unknowns": unknowns,
+        "downstream": o.downstream,
         "prescribed": o.prescribed,
         "rows": o.rows,
         "inputs": o.inputs,
@@ -235,6 +236,10 @@ fn as_text(o: &Outline) -> String {
     list(
         "unknowns that are integrated, with their values at the start",
         &unknowns,
+    );
+    list(
+        "integrated beside these, as the mechanism does not read them",
+        &o.downstream,
     );
     list("prescribed by motions", &o.prescribed);
     list(

@@ -123,6 +123,7 @@ impl Scene {
         b.read_zero();
         if c.errors.is_empty() {
             b.loops(&mut c);
+            b.part_downstream();
             b.natural_sizes();
         }
         if c.errors.is_empty() {

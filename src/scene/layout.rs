@@ -1,9 +1,10 @@
 //! Places and sizes: the only file with index arithmetic over what a program of the scene reads.
 //!
 //! A program of the scene reads one flat row of numbers: `t | q | v | x | turns | loops |
-//! external`. The integrator's unknowns y are its middle part `q | v | x`. Both stay plain slices,
-//! so that programs and methods read and write them as they are; [`Layout`] says where a number
-//! stands, [`State`] is y by its blocks, and [`Instant`] is all of the row by its blocks.
+//! external`. The integrator's unknowns y are its middle part `q | v | x` without the states
+//! downstream of the mechanism, which are the last of x. Both stay plain slices, so that programs
+//! and methods read and write them as they are; [`Layout`] says where a number stands, [`State`] is
+//! y by its blocks, and [`Instant`] is all of the row by its blocks.
 //!
 //! Some programs read more, after these numbers: with branches held, or as implicit equations.
 //! [`LongRow`] and [`ImplicitLayout`] say where that stands.
@@ -20,6 +21,8 @@ pub struct Layout {
     pub n_v: usize,
     /// states of differential equations and of motions given by their rate
     pub n_x: usize,
+    /// of these the last: states downstream of the mechanism, which are no unknowns of its method
+    pub n_downstream: usize,
     /// last accepted values of angles whose turns are counted
     pub n_turns: usize,
     /// unknowns of algebraic loops that are solved beside the programs
@@ -36,7 +39,7 @@ pub struct State<B> {
     pub q: B,
     /// velocities of the forest   (n_v)
     pub v: B,
-    /// further states   (n_x)
+    /// further states that are unknowns of the integrator   (n_upstream)
     pub x: B,
 }
 
@@ -121,8 +124,16 @@ impl Layout {
     pub fn x(&self) -> Range<usize> {
         self.v().end..self.v().end + self.n_x
     }
-    /// Returns the places of the integrator's unknowns `q | v | x`.
+    /// Returns the places of the states downstream of the mechanism.
+    pub fn downstream(&self) -> Range<usize> {
+        self.y().end..self.x().end
+    }
+    /// Returns the places of the integrator's unknowns: `q | v | x` but what is downstream.
     pub fn y(&self) -> Range<usize> {
+        Self::STATE..self.x().end - self.n_downstream
+    }
+    /// Returns the places of all states: `q | v | x`.
+    pub fn states(&self) -> Range<usize> {
         Self::STATE..self.x().end
     }
     /// Returns the places of the counted angles.
@@ -178,9 +189,14 @@ impl Layout {
 
     /// Returns how many unknowns the integrator has.
     pub fn n_y(&self) -> usize {
-        self.n_q + self.n_v + self.n_x
+        self.n_q + self.n_v + self.n_upstream()
     }
-    /// Returns y without the multipliers that a method for implicit equations has after it.
+    /// Returns how many further states are unknowns of the integrator.
+    pub fn n_upstream(&self) -> usize {
+        self.n_x - self.n_downstream
+    }
+    /// Returns y without what may stand after it: states downstream, or the multipliers of a method
+    /// for implicit equations.
     pub fn without_multipliers<'y, T>(&self, y: &'y [T]) -> &'y [T] {
         &y[..self.n_y()]
     }
@@ -192,7 +208,7 @@ impl Layout {
         State {
             q,
             v,
-            x: &rest[..self.n_x],
+            x: &rest[..self.n_upstream()],
         }
     }
     /// Splits y as [`state`](Self::state), to be written.
@@ -202,7 +218,7 @@ impl Layout {
         State {
             q,
             v,
-            x: &mut rest[..self.n_x],
+            x: &mut rest[..self.n_upstream()],
         }
     }
     /// Returns the number of outputs of a rate program: ẏ, then the strength of the rows.
@@ -346,7 +362,8 @@ mod tests {
         let layout = Layout {
             n_q: 4,
             n_v: 3,
-            n_x: 2,
+            n_x: 3,
+            n_downstream: 1,
             n_turns: 1,
             n_loops: 1,
             n_external: 2,
@@ -356,7 +373,11 @@ mod tests {
         let state = layout.state(&row[layout.y()]);
         assert_eq!(state.q, &row[layout.q()]);
         assert_eq!(state.v, &row[layout.v()]);
-        assert_eq!(state.x, &row[layout.x()]);
+        assert_eq!(
+            [state.x, &row[layout.downstream()]].concat(),
+            row[layout.x()]
+        );
+        assert_eq!(layout.states().end, layout.turns().start);
         // numbers after the state are left aside
         assert_eq!(layout.state(&row[layout.y().start..]), state);
         assert_eq!(row[layout.v_at(1)], state.v[1]);

@@ -16,6 +16,7 @@ pub mod configuration;
 pub mod contacts;
 mod coordinate_sums;
 mod couplers;
+mod downstream;
 pub mod elimination;
 pub mod equations;
 pub mod external_inputs;
@@ -448,8 +449,11 @@ pub struct Scene {
     pub mode: f64,
     /// places of unknowns
     pub layout: Layout,
-    /// identities of the unknowns
+    /// identities of the states, with those downstream of the mechanism
     pub unknowns: State<Vec<UnknownId>>,
+    /// formulas that the states downstream read and nothing of the mechanism does   (n_formulas;
+    /// empty: none)
+    pub read_downstream: Vec<bool>,
     /// positions from the dataset, before assembly   (n_q)
     pub initial_q: Vec<f64>,
     /// what was left out
@@ -530,8 +534,13 @@ impl Scene {
     /// Returns the names of the integrator's unknowns in their order, for messages and results.
     pub fn unknown_names(&self) -> Vec<String> {
         let State { q, v, x } = &self.unknowns;
-        let all = q.iter().chain(v).chain(x);
+        let all = q.iter().chain(v).chain(&x[..self.layout.n_upstream()]);
         all.map(ToString::to_string).collect()
+    }
+
+    /// Returns the identities of the states downstream of the mechanism.
+    pub fn downstream(&self) -> &[UnknownId] {
+        &self.unknowns.x[self.layout.n_upstream()..]
     }
 
     /// Returns true if a motion drives an angle rather than a length.

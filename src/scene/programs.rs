@@ -135,7 +135,9 @@ pub fn costs(scene: Configured<'_>) -> Vec<(ElementId, usize)> {
             force.action(&at);
         });
     }
-    for equation in &scene.differentials {
+    let is_upstream = |state: usize| state < scene.layout.n_upstream();
+    let equations = scene.differentials.iter();
+    for equation in equations.filter(|d| d.state.is_none_or(is_upstream)) {
         count(equation.id.element, &|| {
             at.formula(equation.formula);
         });
@@ -389,6 +391,29 @@ where
     }
     let second = programs.pop()?;
     Some([programs.pop()?, second])
+}
+
+/// Records the rates of the states downstream of the mechanism; then, where they change branch with
+/// forces that they read, the same with the branches of `switching` held, which reads its sides
+/// after the numbers.
+///
+/// # Errors
+/// Functions ask for what the equations cannot supply.
+pub fn downstream(
+    recorder: &Recorder<'_, '_>,
+    switching: Option<&Switching>,
+) -> Result<(Program, Option<Program>), Vec<Unsupported>> {
+    let rates = recorder.at().downstream_rates();
+    let has_branches = recorder.end(&rates, |builder, values| {
+        !builder.switching(&values).is_empty()
+    })?;
+    let held = switching.filter(|_| has_branches).and_then(|switching| {
+        held_with(recorder.scene(), switching, 0, |at, _| {
+            [at.downstream_rates(), Vec::new()]
+        })
+    });
+    let held = held.map(|[rates, _]| rates);
+    Ok((recorder.program(&rates)?, held))
 }
 
 /// The rates, and how strong the weakest pivot of the rows is.

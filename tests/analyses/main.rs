@@ -26,6 +26,7 @@ mod allocations;
 mod building;
 mod delays;
 mod doors;
+mod downstream;
 mod energy;
 mod integrators;
 mod limits;

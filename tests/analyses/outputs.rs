@@ -52,6 +52,14 @@ fn models() -> Vec<(String, String, f64)> {
         ("a delay", pushed("-4*DELAY(DX(20,11),0.3,0)"), 2.0),
         ("turns", pushed("-SIN(DX(20,11))*AZ(20,11)-DX(20,11)"), 2.0),
         ("a loop", loaded_by_itself(), 1.0),
+        (
+            "filters of friction that holds",
+            with_ground(&format!(
+                "{SLIDER}SFORCE/1, TRANSLATION, ACTIONONLY, I=20, J=11, FUNCTION=-2*SIGN(1,VX(20,11))+3*SIN(4*TIME)\n\
+                 DIFF/1, IC=0, FUNCTION=1E4*(ACCX(20)-DIF(1))\nDIFF/2, IC=0, FUNCTION=DIF(1)+SFORCE(1,0,2,0)\n"
+            )),
+            2.0,
+        ),
     ]
     .into_iter()
     .map(|(name, text, end)| (name.to_string(), text, end))

@@ -174,7 +174,7 @@ impl Session {
             }
             let l = system.scene.layout;
             system.configuration.external = system.numbers[l.external()].to_vec();
-            let y = system.numbers[l.y()].to_vec();
+            let y = system.numbers[l.states()].to_vec();
             self.put(&mut system, (self.time(), &y), mode).ok()?;
         }
         self.kept_model = Some(model);

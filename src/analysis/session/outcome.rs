@@ -175,6 +175,7 @@ impl Session {
                 away: *away,
                 fed_by: growth::fed_by(system, trajectory.rows.last().unwrap_or(&system.numbers)),
             },
+            Ended::Downstream(stop) => downstream(system, stop),
             Ended::Stop(stop) => {
                 let stands = trajectory.rows.last().unwrap_or(&system.numbers);
                 explained(system, stop, stands)
@@ -240,6 +241,19 @@ fn explained(system: &System, stop: &Stop, stands: &[f64]) -> StopReason {
     }
 }
 
+/// Why states downstream of the mechanism could not go on.
+fn downstream(system: &System, stop: &Stop) -> StopReason {
+    let scene = system.configured();
+    let names = scene.downstream().iter().map(ToString::to_string);
+    let (cause, worst) = cause_among(system, stop.reason, names.collect());
+    StopReason::Method {
+        at: stop.t,
+        step: stop.h,
+        cause,
+        worst,
+    }
+}
+
 /// Returns the obstacle that a method met, and the name of the worst unknown or row.
 fn cause(system: &System, reason: Reason) -> (Cause, String) {
     let scene = &system.scene;
@@ -251,6 +265,12 @@ fn cause(system: &System, reason: Reason) -> (Cause, String) {
         .map(|r| format!("multiplier of {}", row_name(&scene.rows[r])))
         .collect();
     names.extend(rows.iter().cycle().take(multipliers).cloned());
+    cause_among(system, reason, names)
+}
+
+/// Returns the obstacle that a method met, and the worst of the unknowns of these names.
+fn cause_among(system: &System, reason: Reason, names: Vec<String>) -> (Cause, String) {
+    let scene = &system.scene;
     let unknown = |k: usize| match (names.get(k), k.checked_sub(names.len())) {
         (Some(name), _) => name.clone(),
         (None, loops) => loops

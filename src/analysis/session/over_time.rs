@@ -57,6 +57,7 @@ impl Session {
         self.run.log.push(Event::End);
         self.rank_changes(system, chosen, &trajectory);
         self.note_sensors(system, &trajectory);
+        self.note_downstream(system, &trajectory);
         let stopped = self.stop_reason(system, &trajectory, span.end);
         if stopped.as_ref().is_some_and(StopReason::is_lock) {
             self.warn_of_locks();
@@ -192,6 +193,17 @@ impl Session {
         }
         if let Some(Ended::Sensor(k)) = trajectory.ended {
             self.halted |= system.scene.sensors[k].halt;
+        }
+    }
+
+    /// Notes in the log what the states downstream of the mechanism took.
+    fn note_downstream(&mut self, system: &System, trajectory: &Trajectory) {
+        if let Some((method, steps)) = trajectory.downstream {
+            let n = system.scene.layout.n_downstream;
+            let message = format!(
+                "states that the mechanism does not read, integrated beside it: {n}, by {steps} steps of {method}"
+            );
+            self.run.log.push(Event::Info(message));
         }
     }
 

@@ -361,7 +361,7 @@ impl Session {
             system.recorded.external.delays.begin(t, &BTreeMap::new());
         }
         system.numbers[Layout::TIME] = t;
-        system.numbers[l.y()].copy_from_slice(y);
+        system.numbers[l.states()].copy_from_slice(y);
         if let Err(k) = system.resolve() {
             let what = "it depends on itself, and no value solves that";
             return Err(vec![

@@ -7,6 +7,7 @@
 //! recorded     the programs of a configuration: rate, rows, branches, loops, turns; remade as a whole
 //! ode          ẏ = f(t, y), projection; jacobian: its derivatives
 //! implicit     F(t, y, ẏ) = 0
+//! downstream   ẋ = g(t, y, x) of what reads the mechanism and is not read by it
 //! numbers      of an instant, from time and state; speeds, accepted: what is asked of them
 //! external_inputs (past, closures), sensors, samples     numbers that programs read but do not compute
 //! pulses, peaks, time_events, tunnelling, singular_step     how long a step may be
@@ -17,6 +18,7 @@ mod algebraic_loops;
 mod aside;
 pub mod branches;
 pub mod closures;
+pub(super) mod downstream;
 pub(super) mod energy;
 pub mod external_inputs;
 pub mod implicit;

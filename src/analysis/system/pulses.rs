@@ -43,15 +43,28 @@ pub struct Pulses {
 }
 
 impl Pulses {
-    /// Records the functions of a scene that read TIME alone.
+    /// Records the functions of a mechanism that read TIME alone.
     ///
     /// # Errors
     /// Functions that cannot be recorded.
     pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Diagnostic>> {
+        Self::of(scene, false)
+    }
+
+    /// Records the functions of the states downstream of a mechanism that read TIME alone.
+    ///
+    /// # Errors
+    /// Functions that cannot be recorded.
+    pub fn downstream(scene: Configured<'_>) -> Result<Self, Vec<Diagnostic>> {
+        Self::of(scene, true)
+    }
+
+    fn of(scene: Configured<'_>, downstream: bool) -> Result<Self, Vec<Diagnostic>> {
         let of_time = timed(&scene);
         let is_read = read(&scene);
+        let is_there = |f: usize| *scene.read_downstream.get(f).unwrap_or(&false) == downstream;
         let timed: Vec<usize> = (0..scene.formulas.len())
-            .filter(|&f| of_time[f] && is_read[f] && acts(&scene, f))
+            .filter(|&f| of_time[f] && is_read[f] && is_there(f) && acts(&scene, f))
             .collect();
         if timed.is_empty() {
             return Ok(Self::default());

@@ -8,6 +8,7 @@ use super::algebraic_loops::AlgebraicLoops;
 use super::branches::Branches;
 use super::closures::Hook;
 use super::complaints;
+use super::downstream::DownstreamRates;
 use super::external_inputs::ExternalInputs;
 use super::implicit::{Formulation, Implicit};
 use super::jacobian::Derivatives;
@@ -70,6 +71,8 @@ pub(in crate::analysis) struct Recorded {
     pub peaks: Peaks,
     /// breaks at times that are fixed beforehand
     pub time_events: TimeEvents,
+    /// rates of the states downstream of the mechanism; `None`: there are none
+    pub downstream: Option<Box<DownstreamRates>>,
 }
 
 /// Asked between the programs of a recording whether it is to go on; the answer to a caller who
@@ -119,6 +122,7 @@ impl Recorded {
             rows: together.rows,
             branches: together.branches,
             time_events: together.time_events,
+            downstream: together.downstream,
             loops,
             thickness,
             derivatives: Derivatives::default(),
@@ -174,6 +178,7 @@ struct Together {
     rows: Rows,
     branches: Branches,
     time_events: TimeEvents,
+    downstream: Option<Box<DownstreamRates>>,
 }
 
 /// Chooses the way of elimination that takes fewer operations, and records with it what reads rows
@@ -219,12 +224,20 @@ fn record_together(
     look()?;
     let rows = Rows::new(&recorder).map_err(complaints)?;
     look()?;
+    let time_events = TimeEvents::new(&recorder).map_err(complaints)?;
+    look()?;
+    // last, so that the programs of the mechanism are recorded as without it
+    let downstream = match scene.layout.n_downstream {
+        0 => None,
+        _ => Some(Box::new(DownstreamRates::new(&recorder, &branches)?)),
+    };
     Ok(Together {
         way: recorder.scene().configuration.elimination.way,
         rate,
         branches,
         rows,
-        time_events: TimeEvents::new(&recorder).map_err(complaints)?,
+        time_events,
+        downstream,
     })
 }
 

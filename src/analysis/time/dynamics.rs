@@ -4,6 +4,7 @@
 //! with which rows, the next leg begins.
 
 use crate::analysis::system::System;
+use crate::analysis::time::downstream::Downstream;
 use crate::analysis::time::energy;
 use crate::analysis::time::leg::{Finished, Leg, Limits};
 use crate::analysis::time::options::Options;
@@ -112,6 +113,26 @@ pub fn integrate(
     let Some(&end) = outputs.last() else {
         return out;
     };
+    let mut downstream = Downstream::new(system, end, options);
+    go(
+        (system, downstream.as_mut()),
+        (outputs, end),
+        options,
+        watch,
+        &mut out,
+    );
+    out.downstream = downstream.map(|downstream| downstream.work());
+    out
+}
+
+/// Integrates a mechanism to the end, and what is downstream beside it.
+fn go(
+    (system, mut downstream): (&mut System, Option<&mut Downstream>),
+    (outputs, end): (&[f64], f64),
+    options: &Options,
+    watch: &mut dyn Watch,
+    out: &mut Trajectory,
+) {
     let n = Ode::size(system);
     let t0 = system.numbers[Layout::TIME];
     let mut y = system.numbers[system.scene.layout.y()].to_vec();
@@ -137,7 +158,7 @@ pub fn integrate(
         let limited = (end - t0, max_steps);
         let Some(mut method) = options.new_method(&course.name, system, limited) else {
             out.ended = Some(gave_up(t));
-            return out;
+            return;
         };
         out.begin_method(t, &course.name, course.why);
         let implicit = numeric::is_implicit(&course.name);
@@ -153,13 +174,14 @@ pub fn integrate(
             returns_after: course.returns_after(),
             may_slide: !implicit,
         };
-        let mut leg = Leg::new(system, watch, limits, (&mut out, &mut outputs), state.len());
+        let beside = (downstream.as_deref_mut(), state.len());
+        let mut leg = Leg::new(system, watch, limits, (out, &mut outputs), beside);
         let finished = leg.run(method.as_mut(), state);
         out.add_cost(method.stats());
         system.branches_mut().release();
         // another method, or other rows
         let Err(finished) = finished else {
-            return out;
+            return;
         };
         y.truncate(n);
         y.copy_from_slice(match &finished {
@@ -167,8 +189,8 @@ pub fn integrate(
             _ => &method.y()[..n],
         });
         if let Err(why) = course.go_on(finished, method.as_ref()) {
-            end_there(system, method.as_ref(), why, t0, &mut out);
-            return out;
+            end_there(system, method.as_ref(), why, t0, out);
+            return;
         }
         t = method.t();
     }

@@ -12,6 +12,7 @@
 use crate::analysis::system::System;
 use crate::analysis::system::past;
 use crate::analysis::time::counting::Counting;
+use crate::analysis::time::downstream::Downstream;
 use crate::analysis::time::energy::Accountant;
 use crate::analysis::time::leg_peaks::Peak;
 use crate::analysis::time::output::Output;
@@ -79,11 +80,13 @@ pub(super) struct Limits<'a> {
 /// The part of an integration that one method does.
 pub(super) struct Leg<'a> {
     pub(super) system: &'a mut System,
-    watch: &'a mut dyn Watch,
+    pub(super) watch: &'a mut dyn Watch,
     pub(super) limits: Limits<'a>,
     /// results, and the output times: those that are still to come may change
     pub(super) out: &'a mut Trajectory,
     pub(super) outputs: &'a mut Vec<f64>,
+    /// the states downstream of the mechanism; `None`: there are none
+    pub(super) downstream: Option<&'a mut Downstream>,
     switches: Switches,
     /// end of the next step, when something has been located inside the one before
     pub(super) landing: f64,
@@ -146,7 +149,7 @@ impl<'a> Leg<'a> {
         watch: &'a mut dyn Watch,
         limits: Limits<'a>,
         (out, outputs): (&'a mut Trajectory, &'a mut Vec<f64>),
-        size: usize,
+        (downstream, size): (Option<&'a mut Downstream>, usize),
     ) -> Self {
         let has_rows = !system.scene.rows.is_empty();
         let [most, least] = STALLED_STEPS;
@@ -173,6 +176,7 @@ impl<'a> Leg<'a> {
             limits,
             out,
             outputs,
+            downstream,
         }
     }
 
@@ -187,7 +191,7 @@ impl<'a> Leg<'a> {
             let Judged::Kept { switched, violated } = self.judge(method, &step)? else {
                 continue;
             };
-            let anew = self.accept(method, &step);
+            let anew = self.accept(method, &step)?;
             let mut switched = switched || anew > step.t1;
             // before a sample changes what held during the step
             switched |= self.remember(method, &step);
@@ -217,6 +221,7 @@ impl<'a> Leg<'a> {
         method.start(self.system, t, y)?;
         self.look_ahead(method)?;
         self.begin_peaks(method);
+        self.downstream_begins_anew();
         self.system.take_weak();
         self.progressed = (attempted(method), method.t());
         self.out.runaway.begin();
@@ -348,7 +353,7 @@ impl<'a> Leg<'a> {
         }
         // contacts of curves that end
         if let Some((t, broken)) = self.broken(method, step) {
-            self.emit(method, &Step { t1: t, ..*step }, t);
+            self.emit(method, &Step { t1: t, ..*step }, t)?;
             return Err(Finished::Ended(Ended::Broken { t, broken }));
         }
         let switched = verdict == Verdict::Switched;
@@ -380,18 +385,18 @@ impl<'a> Leg<'a> {
 
     /// Puts out what lies within a step; the time from which it goes on: the first one behind a
     /// time event at its end.
-    fn accept(&mut self, method: &mut dyn Method<System>, step: &Step) -> f64 {
+    fn accept(&mut self, method: &mut dyn Method<System>, step: &Step) -> Result<f64, Finished> {
         let behind = self.system.recorded.time_events.behind(step.t1);
         let anew = behind.unwrap_or(step.t1).min(self.limits.end);
         self.repeated = 0;
         self.system.recorded.peaks.keep();
-        self.emit(method, step, anew);
+        self.emit(method, step, anew)?;
         self.account(method, step);
         self.out.last_step = Some((step.t1, step.h));
         self.watch.progress(step.t1, step.h, method.stats());
         self.watch.visit(self.system, step.t1, method.y());
         self.watch.collect(self.system, self.out);
-        anew
+        Ok(anew)
     }
 
     /// Adds an accepted step to the accounts of energy and of what limited steps.
@@ -502,6 +507,7 @@ impl<'a> Leg<'a> {
         method.reinitialize(self.system, anew, &state)?;
         self.look_ahead(method)?;
         self.begin_peaks(method);
+        self.downstream_begins_anew();
         // after the method has begun anew, which chooses a step of its own
         if let Some(h) = stepsize {
             method.propose(h);

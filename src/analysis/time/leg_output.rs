@@ -3,21 +3,22 @@
 use crate::analysis::system::System;
 use crate::analysis::system::turns::Look;
 use crate::analysis::time::counting::Counting;
-use crate::analysis::time::leg::Leg;
+use crate::analysis::time::leg::{Finished, Leg};
 use crate::numeric::{Method, Step};
 
 impl Leg<'_> {
-    /// Returns the first output time inside a step at which the interpolant has no value: a step
-    /// has to end there.
+    /// Returns a time inside a step at which the interpolant has no value although somebody reads
+    /// it: the first output time, or the middle where states downstream do. A step has to end
+    /// there.
     pub(super) fn unreadable(
         &mut self,
         method: &mut dyn Method<System>,
         step: &Step,
     ) -> Option<f64> {
-        let t = *self
-            .outputs
-            .get(self.out.t.len())
-            .filter(|&&t| t < step.t1)?;
+        let output = self.outputs.get(self.out.t.len()).copied();
+        let reads = self.system.reads_mechanism_downstream();
+        let middle = reads.then_some(step.t0 + 0.5 * (step.t1 - step.t0));
+        let t = output.filter(|&t| t < step.t1).or(middle)?;
         let state = &mut self.between;
         state.resize(method.y().len(), 0.0);
         let found = (self.system).aside(|system| method.interpolate(system, t, state));
@@ -26,14 +27,28 @@ impl Leg<'_> {
     }
 
     /// Puts out the states at output times inside an accepted step, and up to `until` just behind
-    /// it; counts turns up to its end.
-    pub(super) fn emit(&mut self, method: &mut dyn Method<System>, step: &Step, until: f64) {
+    /// it; counts turns up to its end, and lets what is downstream follow there.
+    ///
+    /// # Errors
+    /// States downstream could not follow.
+    pub(super) fn emit(
+        &mut self,
+        method: &mut dyn Method<System>,
+        step: &Step,
+        until: f64,
+    ) -> Result<(), Finished> {
         let mut state = std::mem::take(&mut self.between);
         state.resize(method.y().len(), 0.0);
+        let (found, outcome) = self.follow_downstream(method, step, until);
+        let mut found = found.into_iter();
         self.begin_counting(method, step);
         while let Some(&t) = self.outputs.get(self.out.t.len()) {
             if t > until {
                 break;
+            }
+            if self.downstream.is_some() {
+                let Some(x) = found.next() else { break };
+                self.system.put_downstream(&x);
             }
             self.count_turns(method, step, t);
             let (row, branches) = self.system.aside(|system| {
@@ -53,6 +68,10 @@ impl Leg<'_> {
         }
         self.between = state;
         self.count_turns(method, step, step.t1);
+        if let Some(downstream) = &self.downstream {
+            self.system.put_downstream(downstream.states());
+        }
+        outcome
     }
 
     /// Returns a bound of the turn of the markers of counted angles within a step, rad.

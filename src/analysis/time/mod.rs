@@ -7,6 +7,7 @@
 //! ranks        positions where rows become dependent; better rows; why a mechanism is locked
 //! kinematics   mechanisms without freedom; continuation: their steps along a branch;
 //!              kinematic_sensors: what is watched on the way
+//! downstream   states that read the mechanism and are not read by it, beside it
 //! counting     turns of angles, within the steps of all these
 //! states       states on the way, and those between
 //! drives       motions that jump              valueless   functions that lose their value
@@ -16,6 +17,7 @@
 mod chatter;
 pub mod continuation;
 pub(super) mod counting;
+mod downstream;
 pub mod drives;
 pub mod dynamics;
 pub mod energy;

@@ -65,15 +65,10 @@ impl Options {
         }
     }
 
-    /// Returns the method of that name for a run of a system of some duration, which may attempt
-    /// `max_steps` steps, or `None` if there is none.
-    pub(super) fn new_method(
-        &self,
-        name: &str,
-        system: &System,
-        (duration, max_steps): (f64, usize),
-    ) -> Option<Box<dyn Method<System>>> {
-        let settings = numeric::Options {
+    /// Returns what a method is asked for in a run of some duration, which may attempt `max_steps`
+    /// steps.
+    pub(super) fn settings(&self, duration: f64, max_steps: usize) -> numeric::Options {
+        numeric::Options {
             tolerance: self.error,
             h_initial: self.h_initial,
             h_max: self.h_max,
@@ -82,7 +77,18 @@ impl Options {
             max_newton: self.max_newton.unwrap_or(10),
             max_steps,
             ..numeric::Options::default()
-        };
+        }
+    }
+
+    /// Returns the method of that name for a run of a system of some duration, which may attempt
+    /// `max_steps` steps, or `None` if there is none.
+    pub(super) fn new_method(
+        &self,
+        name: &str,
+        system: &System,
+        (duration, max_steps): (f64, usize),
+    ) -> Option<Box<dyn Method<System>>> {
+        let settings = self.settings(duration, max_steps);
         numeric::ode_method::<System>(name, Ode::size(system), &settings)
             .or_else(|| numeric::dae_method::<System>(name, system.implicit_size(), &settings))
     }
@@ -105,7 +111,7 @@ pub fn method_named(name: &str) -> String {
 /// Steps of an explicit method that stability may force before an implicit one is taken at once.
 const MAX_STABILITY_STEPS: f64 = 2000.0;
 /// Size of the largest system whose eigenvalues are computed for the choice of a method.
-const MAX_EIGENVALUES: usize = 120;
+pub(super) const MAX_EIGENVALUES: usize = 120;
 /// Smallest damping ratio of a mode that counts as damped.
 const LEAST_DAMPING_RATIO: f64 = 0.03;
 
@@ -125,18 +131,23 @@ pub fn first_method(system: &mut System, duration: f64) -> &'static str {
     if (system.jacobian_once(&mut jacobian, &mut dfdt)).is_err() {
         return "DOP853";
     }
+    match is_stiff(n, jacobian, duration) {
+        true => "RADAU5",
+        false => "DOP853",
+    }
+}
+
+/// Returns whether damped modes of a Jacobian (n × n, by columns) are so fast that stability would
+/// set the steps of an explicit method.
+pub(super) fn is_stiff(n: usize, jacobian: Vec<f64>, duration: f64) -> bool {
     let matrix = nalgebra::DMatrix::from_vec(n, n, jacobian);
     let Some(schur) = nalgebra::linalg::Schur::try_new(matrix, f64::EPSILON, 1000) else {
-        return "DOP853";
+        return false;
     };
     let fastest = schur
         .complex_eigenvalues()
         .iter()
         .filter(|l| -l.re > LEAST_DAMPING_RATIO * l.norm())
         .fold(0.0, |m: f64, l| m.max(l.norm()));
-    if fastest * duration > 5.0 * MAX_STABILITY_STEPS {
-        "RADAU5"
-    } else {
-        "DOP853"
-    }
+    fastest * duration > 5.0 * MAX_STABILITY_STEPS
 }

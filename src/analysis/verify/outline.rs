@@ -39,6 +39,8 @@ pub struct Outline {
     pub welded: Vec<String>,
     /// unknowns of the integrator with their values at the start
     pub unknowns: Vec<(String, f64)>,
+    /// states that are integrated beside these: the mechanism does not read them
+    pub downstream: Vec<String>,
     /// coordinates that motions prescribe
     pub prescribed: Vec<String>,
     /// rows that close loops
@@ -133,6 +135,7 @@ pub fn outline(model: &Model) -> Result<Outline, Error> {
         .into_iter()
         .zip(q.into_iter().chain(v).chain(x))
         .collect();
+    out.downstream = scene.downstream().iter().map(ToString::to_string).collect();
     out.prescribed = prescribed(&scene);
     let system = System::new(scene, configuration)?;
     out.operations = (

@@ -395,9 +395,9 @@ impl<S: Scalar> Equations<'_, S> {
         self.coordinates(&[]).of(self.scene.coordinates[c].source)
     }
 
-    /// `ẋ`
+    /// Returns `ẋ` of the states that are unknowns of the integrator.
     pub fn state_rates(&self) -> Vec<S> {
-        let mut out = vec![S::zero(); self.now.x.len()];
+        let mut out = vec![S::zero(); self.scene.layout.n_upstream()];
         for (m, motion) in self.scene.motions.iter().enumerate() {
             if let Some(s) = motion.state {
                 out[s] = self.driven[m].first;
@@ -415,7 +415,9 @@ impl<S: Scalar> Equations<'_, S> {
             }
         }
         for (k, d) in self.scene.differentials.iter().enumerate() {
-            let Some(state) = d.state else { continue };
+            let Some(state) = d.state.filter(|&state| state < out.len()) else {
+                continue;
+            };
             // at rest the residual of an implicit equation stands for its rate
             out[state] = if d.implicit && self.scene.mode == STATIC {
                 self.formula(d.formula)
@@ -426,6 +428,19 @@ impl<S: Scalar> Equations<'_, S> {
         for force in &self.scene.forces {
             let (places, rates) = force.state_rates(self);
             out[places].copy_from_slice(&rates);
+        }
+        out
+    }
+
+    /// Returns `ẋ` of the states downstream of the mechanism.
+    pub fn downstream_rates(&self) -> Vec<S> {
+        let layout = &self.scene.layout;
+        let mut out = vec![S::zero(); layout.n_downstream];
+        for (k, d) in self.scene.differentials.iter().enumerate() {
+            let place = d.state.and_then(|s| s.checked_sub(layout.n_upstream()));
+            if let Some(place) = place {
+                out[place] = self.rate_of(k);
+            }
         }
         out
     }
