@@ -2,7 +2,7 @@
 
 use crate::scene::solve::MassFactor;
 use crate::scene::{Scene, Source};
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{Cholesky, DMatrix, DMatrixViewMut, DVector, Dyn};
 
 /// Part of the whole mass that is added in every direction.
 const ADDED_MASS: f64 = 1e-6;
@@ -67,7 +67,7 @@ impl Metric {
     }
 
     /// Adds `factor` D to the first rows and columns of a matrix.
-    pub fn add_to(&self, a: &mut DMatrix<f64>, factor: f64) {
+    pub fn add_to(&self, a: &mut DMatrixViewMut<'_, f64>, factor: f64) {
         for (i, row) in self.rows.iter().enumerate() {
             for &(j, d) in row {
                 a[(i, j)] += factor * d;

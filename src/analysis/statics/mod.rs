@@ -41,6 +41,7 @@ use crate::analysis::watch::Watch;
 use crate::expr::program::{Program, Work};
 use crate::model;
 use crate::numeric::Stats;
+use crate::numeric::dense::Lu;
 use crate::numeric::pattern::Pattern;
 use crate::scalar::Dual;
 use crate::scene::layout::Layout;
@@ -134,6 +135,8 @@ struct Settler<'a> {
     drift: Option<DMatrix<f64>>,
     /// indices of the active rows
     rows: Vec<usize>,
+    /// the matrix of a step, and its factors
+    lu: Lu,
     evaluations: usize,
     factorizations: usize,
 }
@@ -211,6 +214,7 @@ impl<'a> Settler<'a> {
             moving,
             states,
             rows,
+            lu: Lu::new(0),
             evaluations: 0,
             factorizations: 0,
             system,

@@ -69,7 +69,7 @@ impl Settler<'_> {
         let z = DMatrix::from_fn(n, f, |i, j| free[j][i]);
         let stiffness = -(z.transpose() * k * &z);
         let mut metric = DMatrix::zeros(n, n);
-        p.metric.add_to(&mut metric, 1.0);
+        p.metric.add_to(&mut metric.as_view_mut(), 1.0);
         let inertia = z.transpose() * metric * &z;
         let Some(factor) = Cholesky::new(inertia) else {
             return (Stability::default(), None);

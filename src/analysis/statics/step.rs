@@ -10,7 +10,7 @@ use crate::numeric::envelope;
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
 use crate::scene::tunnelling::ThicknessBound;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DMatrixViewMut, DVector};
 
 /// Iterations of one implicit step.
 const MAX_CORRECTIONS: usize = 8;
@@ -82,8 +82,16 @@ impl Settler<'_> {
         self.factorizations += 1;
         let (n, m, d) = (self.n_v(), self.rows.len(), self.states.len());
         let size = n + d + m;
-        let mut a = DMatrix::zeros(size, size);
-        a.view_mut((0, 0), (n + d, n + d)).copy_from(&(-jacobian));
+        if self.lu.size() != size {
+            self.lu = Lu::new(size);
+        }
+        // large matrices stand where those of the step before did
+        let mut a = DMatrixViewMut::from_slice(self.lu.matrix_mut(), size, size);
+        a.fill(0.0);
+        for (mut to, from) in a.column_iter_mut().zip(jacobian.column_iter()) {
+            let entries = to.iter_mut().zip(from.iter());
+            entries.for_each(|(to, from)| *to = -from);
+        }
         p.metric.add_to(&mut a, 1.0 / pace.length);
         for (k, rate) in pace.states.iter().enumerate() {
             a[(n + k, n + k)] += rate;
@@ -92,16 +100,23 @@ impl Settler<'_> {
             let mut follow = a.view_mut((n, 0), (d, n));
             follow -= drift / pace.length;
         }
-        a.view_mut((0, n + d), (n, m))
-            .copy_from(&(-p.rows.gradient.transpose()));
-        a.view_mut((n + d, 0), (m, n)).copy_from(&p.rows.gradient);
-        let stiffness = a.view((0, 0), (n, n)).into_owned();
+        for (i, row) in p.rows.gradient.row_iter().enumerate() {
+            for (j, g) in row.iter().enumerate() {
+                a[(j, n + d + i)] = -g;
+                a[(n + d + i, j)] = *g;
+            }
+        }
         rhs.resize(size, 0.0);
-        let mut lu = Lu::new(size);
-        lu.matrix_mut().copy_from_slice(a.as_slice());
-        let upright = !downhill || goes_down(&stiffness, &p.rows.gradient);
+        let mut upright = true;
+        let mut is_symmetric = false;
+        if downhill {
+            let stiffness = a.view((0, 0), (n, n)).into_owned();
+            upright = goes_down(&stiffness, &p.rows.gradient);
+            is_symmetric = !upright && d == 0 && asymmetry(&stiffness) < 1e-3;
+        }
+        let lu = &mut self.lu;
         lu.factor(1e-15).ok()?;
-        if !upright && (d == 0 && asymmetry(&stiffness) < 1e-3 || !lu.positive()) {
+        if !upright && (is_symmetric || !lu.positive()) {
             return None;
         }
         lu.solve(&mut rhs);
@@ -292,7 +307,8 @@ impl Settler<'_> {
 
 /// Returns whether the symmetric part of a matrix is positive on what the rows leave free.
 fn goes_down(a: &DMatrix<f64>, gradient: &DMatrix<f64>) -> bool {
-    let mut s = (a + a.transpose()) * 0.5;
+    let n = a.nrows();
+    let mut s = DMatrix::from_fn(n, n, |i, j| (a[(i, j)] + a[(j, i)]) * 0.5);
     if gradient.nrows() > 0 {
         // a large stiffness against leaving the rows, in each row alike
         let size = s.amax();
