@@ -20,6 +20,7 @@ use super::sensors::Sensors;
 use super::time_events::TimeEvents;
 use super::tunnelling::ThicknessBounds;
 use super::turns::Turns;
+use crate::analysis::look::Look;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::scene::articulated::ArticulatedFactor;
@@ -71,10 +72,6 @@ pub(in crate::analysis) struct Recorded {
     /// breaks at times that are fixed beforehand
     pub time_events: TimeEvents,
 }
-
-/// Asked between the programs of a recording whether it is to go on; the answer to a caller who
-/// does not want that is an error.
-pub(in crate::analysis) type Look<'a> = &'a mut dyn FnMut() -> Result<(), Vec<Diagnostic>>;
 
 impl Recorded {
     /// Records the programs of a scene, and chooses how accelerations are eliminated: pivots are
