@@ -13,6 +13,7 @@
 //! work_limit   processor time that may be used
 //! system       a scene as ẏ = f(t, y) and as F(t, y, ẏ) = 0; everything its programs read
 //! start        assembly, placement, initial conditions
+//! look         whether a long phase of setting up is to go on
 //! ```
 
 pub mod accuracy;
@@ -20,6 +21,7 @@ pub mod direction;
 #[cfg(feature = "geometry")]
 pub mod interference;
 pub mod linear;
+mod look;
 pub mod motion;
 pub(in crate::analysis) mod quantity;
 mod runaway;

@@ -66,6 +66,9 @@ pub struct EnergyFlow {
     pub spent: Duration,
 }
 
+/// Roundings of potential energies that a balance may be off by.
+const ROUNDINGS: f64 = 4.0;
+
 impl EnergyFlow {
     /// Compares the energy with what was put in so far.
     pub(super) fn look(&mut self, energy: Energy) {
@@ -79,7 +82,12 @@ impl EnergyFlow {
         let sizes = [energy[0], start[0], energy[1] - start[1]];
         let sizes = sizes.iter().chain(&self.works);
         self.scale = sizes.fold(self.scale, |m, x| m.max(x.abs()));
-        let imbalance = (change - put_in).abs();
+        // potential energies far from the origin are known to their rounding only
+        let rounding = ROUNDINGS * f64::EPSILON * (start[1].abs() + energy[1].abs());
+        let imbalance = match (change - put_in).abs() {
+            off if off <= rounding => 0.0,
+            off => off,
+        };
         if imbalance > self.imbalance || imbalance.is_nan() {
             self.imbalance = imbalance;
         }

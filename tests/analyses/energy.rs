@@ -164,3 +164,100 @@ fn the_number_of_outputs_changes_nothing_in_the_account_of_a_driven_mechanism() 
     let work = 0.5 * 200.0 - 0.25 * 400.0_f64.sin();
     near(driven(turning, 5.0, 3).by_functions, work, 1e-6 * work);
 }
+
+const ALL_METHODS: [&str; 6] = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
+
+/// Where forces balance, rounding and permitted errors move what is at rest: a balance of nothing else has no error.
+#[test]
+fn what_stands_still_has_hardly_any_error_of_energy() {
+    let slider = |place: f64, force: &str| {
+        format!(
+            "PART/2, MASS=2, CM=2, IP=1,1,1, QG={place:?},0,0\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=3, J=4\n\
+             MARKER/3, PART=2, REULER=90D,90D,0\nMARKER/4, PART=1, REULER=90D,90D,0\n\
+             SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=3, J=4, FUNCTION={force}\n"
+        )
+    };
+    let ball = "PART/2, MASS=2, CM=2, IP=1,1,1, QG=0,0,0.0999\nMARKER/2, PART=2\n\
+                GRAPHICS/1, ELLIPSOID, CM=2, XSCALE=0.2, YSCALE=0.2, ZSCALE=0.2\n\
+                GRAPHICS/2, PLANE, RM=1, XMIN=-1, XMAX=1, YMIN=-1, YMAX=1\n\
+                CONTACT/1, IGEOM=1, JGEOM=2, IMPACT, STIFFNESS=196200, EXPONENT=1, DAMPING=10, DMAX=1e-6\n\
+                ACCGRAV/KGRAV=-9.81\n";
+    let at_rest = [
+        // held by dry friction
+        slider(0.0, "5*SIN(3*TIME)-10*SIGN(1,VX(2,1))"),
+        // on a stiff spring, and on a stiff plane
+        slider(0.300000001, "-1e9*(DX(2,1)-0.3)+1"),
+        ball.to_string(),
+    ];
+    for text in at_rest {
+        for method in ALL_METHODS {
+            for error in [1e-2, 1e-5] {
+                let e = account(&text, method, (1.0, 10), error);
+                assert!(e.error() < 0.02, "{method} {error:e}: {e:?}");
+            }
+        }
+    }
+}
+
+/// Small motions have an account as large ones do, wherever gravity counts from.
+#[test]
+fn small_motions_have_an_account_wherever_they_are() {
+    for method in ALL_METHODS {
+        for width in [1e-3, 1.0, 1e3] {
+            let text = format!("{}ACCGRAV/IGRAV=-9.81\n", mass_on_a_spring(0.0, ""));
+            let text = text.replace(
+                "QG=1.5,0,0",
+                &format!("QG={:?},0,0", 1.0 - 2.0 * 9.81 / 50.0 + width),
+            );
+            let e = account(&text, method, (3.0, 10), 1e-4);
+            assert!(
+                e.scale > 0.0 && e.error() < 0.02,
+                "{method} {width:e}: {e:?}"
+            );
+        }
+        // a mass of a ton that hums a millimetre wide, a million metres up: its weight is stored to a joule
+        let text = "PART/2, MASS=1000, CM=2, IP=1,1,1, QG=1e6,0,0\nMARKER/2, PART=2\nMARKER/5, PART=1, QP=1e6,0,0\n\
+                    JOINT/1, TRANSLATIONAL, I=3, J=4\nMARKER/3, PART=2, REULER=90D,90D,0\n\
+                    MARKER/4, PART=1, REULER=90D,90D,0\nACCGRAV/IGRAV=-9.81\n\
+                    SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=3, J=4, FUNCTION=9810-100*(DX(2,5)-1e-3)\n";
+        let e = account(text, method, (100.0, 10), 1e-4);
+        assert!(e.error() < 0.02, "{method}: {e:?}");
+    }
+}
+
+/// Where a motion stays at the place at which a function changes branch, the mean of its branches does the work; where it passes such a
+/// place, the branch on which the step lies.
+#[test]
+fn work_of_forces_that_jump_closes_the_account() {
+    let slider = |force: &str| {
+        format!(
+            "PART/2, MASS=1.3, CM=2, IP=1,1,1, QG=0.3,0,0, VX=-0.4\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=3, J=4\n\
+             MARKER/3, PART=2, REULER=90D,90D,0\nMARKER/4, PART=1, REULER=90D,90D,0\n\
+             SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=3, J=4, FUNCTION={force}\n"
+        )
+    };
+    let forces = [
+        // a relay, which slides along DX + 0.5 VX = 0
+        "-1.6*SIGN(1,DX(2,1)+0.49385*VX(2,1))",
+        "-3*SIGN(1,DX(2,1)+0.1*VX(2,1))-2*DX(2,1)",
+        // springs with a step where they meet
+        "IF(DX(2,1)-0.13:-250*DX(2,1),0,-414*DX(2,1)-1.8)-0.12*VX(2,1)",
+        "IF(DX(2,1):3,0,-5)-20*DX(2,1)",
+    ];
+    for force in forces {
+        for method in ALL_METHODS {
+            for error in [1e-3, 1e-6] {
+                if error < 1e-5 && ["HHT", "NEWMARK"].contains(&method) {
+                    continue;
+                }
+                let e = account(&slider(force), method, (3.0, 10), error);
+                let permitted = if error < 1e-5 { 1e-3 } else { 0.05 };
+                assert!(
+                    e.error() < permitted,
+                    "{force} {method} {error:e}: {}",
+                    e.error()
+                );
+            }
+        }
+    }
+}

@@ -218,3 +218,44 @@ fn a_set_up_is_interrupted_between_any_two_of_its_programs() {
     // the model, the scene, positions, velocities, some fifteen programs, columns
     assert!(in_set_up >= 18, "{in_set_up}");
 }
+
+/// Loops whose rows depend on each other are closed, weighed and looked at from nearby: a caller need not wait for all of it.
+#[test]
+fn assembly_is_interrupted_between_any_two_of_its_steps() {
+    // a four-bar of revolutes, drawn with a gap
+    let text = "PART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=0,1,0\n\
+                PART/3, MASS=1, CM=30, IP=1,1,1, QG=0,1.001,0\nMARKER/30, PART=3\nMARKER/31, PART=3, QP=1,0,0\n\
+                PART/4, MASS=1, CM=40, IP=1,1,1, QG=1,0,0\nMARKER/40, PART=4\nMARKER/41, PART=4, QP=0,1.1,0\n\
+                MARKER/11, PART=1, QP=1,0,0\nJOINT/1, REVOLUTE, I=20, J=1\nJOINT/2, REVOLUTE, I=30, J=21\n\
+                JOINT/3, REVOLUTE, I=31, J=41\nJOINT/4, REVOLUTE, I=40, J=11\nACCGRAV/JGRAV=-9.81\n";
+    let options = || Options {
+        columns: vec!["AZ(20,1)".into()],
+        ..Options::default()
+    };
+    let mut while_assembled = 0;
+    let untouched = {
+        let mut session = begin(model(text), "loop", options());
+        let status = session.simulate(Analysis::Dynamic, 0.01, 1, &mut Unwatched);
+        assert_eq!(status.expect("a run"), Status::Completed);
+        values(&session, "AZ(20,1)").to_vec()
+    };
+    for most in 1.. {
+        let mut session = begin(model(text), "loop", options());
+        let mut watch = Impatient { looks: 0, most };
+        let status = session.simulate(Analysis::Dynamic, 0.01, 1, &mut watch);
+        // the first answer is obeyed, whatever assembly would have tried next
+        assert_eq!(
+            (status.expect("a run"), watch.looks),
+            (Status::Interrupted, most)
+        );
+        if session.run.record.seconds.assemble > 0.0 {
+            break;
+        }
+        while_assembled += 1;
+        let again = session.simulate(Analysis::Dynamic, 0.01, 1, &mut Unwatched);
+        assert_eq!(again.expect("a run"), Status::Completed, "{most}");
+        assert_eq!(values(&session, "AZ(20,1)"), untouched, "{most}");
+    }
+    // three of them before and after
+    assert!(while_assembled >= 15, "{while_assembled}");
+}

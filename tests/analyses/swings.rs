@@ -188,3 +188,138 @@ fn outputs_change_nothing_about_it() {
         assert!(is_told(&s), "{steps}");
     }
 }
+
+/// Equal masses in a row between walls, on equal springs, with any velocities: the modes are known.
+struct Row {
+    n: usize,
+    stiffness: f64,
+    velocities: Vec<f64>,
+}
+
+impl Row {
+    fn text(&self) -> String {
+        let mut text = String::from("MARKER/4, PART=1, REULER=90D,90D,0\n");
+        for (k, v) in (10..).zip(&self.velocities) {
+            text += &format!(
+                "PART/{k}, MASS=1, CM={k}, IP=1,1,1, VX={v}\nMARKER/{k}, PART={k}\nMARKER/{k}0, PART={k}, REULER=90D,90D,0\n\
+                 JOINT/{k}, TRANSLATIONAL, I={k}0, J=4\n"
+            );
+        }
+        let last = 9 + self.n;
+        for k in 10..=last {
+            let place = |k: usize| {
+                if (10..=last).contains(&k) {
+                    format!("DX({k},1)")
+                } else {
+                    "0".into()
+                }
+            };
+            text += &format!(
+                "SFORCE/{k}, TRANSLATIONAL, ACTIONONLY, I={k}0, J=4, FUNCTION={:?}*({}-2*{}+{})\n",
+                self.stiffness,
+                place(k - 1),
+                place(k),
+                place(k + 1)
+            );
+        }
+        text
+    }
+
+    /// Frequency of a mode, rad/s.
+    fn frequency(&self, mode: usize) -> f64 {
+        2.0 * self.stiffness.sqrt() * (self.angle(1, mode) / 2.0).sin()
+    }
+
+    fn angle(&self, k: usize, mode: usize) -> f64 {
+        (k * mode) as f64 * std::f64::consts::PI / (self.n + 1) as f64
+    }
+
+    /// Where mass `k` (from 1) is.
+    fn at(&self, k: usize, t: f64) -> f64 {
+        let modes = (1..=self.n).map(|mode| {
+            let share: f64 = (1..)
+                .zip(&self.velocities)
+                .map(|(j, v)| v * self.angle(j, mode).sin())
+                .sum();
+            let w = self.frequency(mode);
+            2.0 / (self.n + 1) as f64 * share * self.angle(k, mode).sin() * (w * t).sin() / w
+        });
+        modes.sum()
+    }
+}
+
+/// The error that undamped swings add up is in proportion to their number and to the request: beyond a hundred requests a run says so
+/// by every method, and none that is off by few says it.
+#[test]
+fn errors_of_swings_with_several_frequencies_that_add_up_are_told() {
+    let rows = [
+        (1, 30.0, vec![0.7]),
+        (3, 400.0, vec![1.0, -0.3, 0.2]),
+        (8, 7.0, vec![0.0, 0.4, 0.0, 0.0, -1.0, 0.3, 0.0, 0.2]),
+    ];
+    let mut found = [0, 0];
+    for (n, stiffness, velocities) in rows {
+        let row = Row {
+            n,
+            stiffness,
+            velocities,
+        };
+        for method in METHODS {
+            let many = match method {
+                "HHT" | "NEWMARK" => [10.0, 100.0],
+                "BDF" => [10.0, 300.0],
+                _ => [100.0, 3000.0],
+            };
+            for swings in many {
+                for error in [1e-2, 1e-3] {
+                    let column = "DX(10,1)";
+                    let mut s = session_by(&row.text(), &[column], method, error);
+                    // no output meets the beginning of a swing again and again
+                    let end = (swings + 0.37) * TAU / row.frequency(n);
+                    if try_to(&mut s, Analysis::Dynamic, end, 500) == Status::Limit {
+                        continue;
+                    }
+                    let at = running::values(&s, column);
+                    let times = (0..at.len()).map(|k| end * k as f64 / 500.0);
+                    let exact: Vec<f64> = times.map(|t| row.at(1, t)).collect();
+                    let widest = exact.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+                    let pairs = at.iter().zip(&exact);
+                    let lost = pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+                    let requests = lost / widest / error;
+                    let adds_up = s
+                        .run
+                        .record
+                        .warned()
+                        .iter()
+                        .any(|w| w.contains("errors add up"));
+                    println!("{n} {swings} {method} {error:e}: {requests:.1} {adds_up}");
+                    assert!(
+                        adds_up || is_told(&s) || requests < 100.0,
+                        "{n} {swings} {method} {error:e}: {requests}"
+                    );
+                    assert!(
+                        !adds_up || requests > 5.0,
+                        "{n} {swings} {method} {error:e}: {requests}"
+                    );
+                    found[usize::from(adds_up)] += 1;
+                }
+            }
+        }
+    }
+    assert!(found[0] >= 10 && found[1] >= 8, "{found:?}");
+}
+
+#[test]
+fn errors_of_swings_that_are_damped_do_not_add_up() {
+    for force in ["-0.5*VX(2,1)", "-0.5*VX(2,1)+10*SIN(3*TIME)"] {
+        for method in METHODS {
+            let mut s = session_by(&oscillator(force), &[], method, 1e-3);
+            go(&mut s, Analysis::Dynamic, 400.0, 10);
+            let said = s.run.record.warned();
+            assert!(
+                !said.iter().any(|w| w.contains("errors add up")),
+                "{method} {force}"
+            );
+        }
+    }
+}

@@ -3,6 +3,7 @@
 
 use super::stop_reason::StopReason;
 use super::{Analysis, Session};
+use crate::analysis::look::Look;
 use crate::analysis::system::System;
 use crate::analysis::time::output::Output;
 use crate::analysis::trajectory::Trajectory;
@@ -215,17 +216,43 @@ impl Session {
         done: SetUp,
         watch: &mut dyn Watch,
     ) -> Result<(), Vec<Diagnostic>> {
+        self.looking(done, watch, |_, look| look())
+    }
+
+    /// Does a part of setting up after the phase `done`, which lets the caller look on its way.
+    ///
+    /// # Errors
+    /// Those of the work; or the reason why it is not to go on, once that was the answer to a look.
+    pub(super) fn looking<T>(
+        &mut self,
+        done: SetUp,
+        watch: &mut dyn Watch,
+        work: impl FnOnce(&mut Self, Look<'_>) -> Result<T, Vec<Diagnostic>>,
+    ) -> Result<T, Vec<Diagnostic>> {
         self.activity.set(done);
-        let why = if self.is_over_limit() {
-            self.over(Reached::SetUp(done))
-        } else if watch.interrupted() {
-            StopReason::Interrupted
-        } else {
-            return Ok(());
-        };
-        let refused = Diagnostic::error(why.code(), why.to_string());
-        self.ended_early = Some(why);
-        Err(vec![refused])
+        let limit = self.limit;
+        let mut ended: Option<StopReason> = None;
+        let refusal = |why: &StopReason| vec![Diagnostic::error(why.code(), why.to_string())];
+        let outcome = work(self, &mut || {
+            if ended.is_none() {
+                ended = match limit.filter(|limit| limit.left() <= 0.0) {
+                    Some(WorkLimit { seconds, .. }) => {
+                        let reached = Reached::SetUp(done);
+                        Some(StopReason::WorkLimit { seconds, reached })
+                    }
+                    None => watch.interrupted().then_some(StopReason::Interrupted),
+                };
+            }
+            ended.as_ref().map_or(Ok(()), |why| Err(refusal(why)))
+        });
+        match ended {
+            None => outcome,
+            Some(why) => {
+                let refused = refusal(&why);
+                self.ended_early = Some(why);
+                Err(refused)
+            }
+        }
     }
 
     /// Adds a simulation to the record that ended before it began.

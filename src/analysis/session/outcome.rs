@@ -183,8 +183,9 @@ impl Session {
         })
     }
 
-    /// Adds the energies and works of a simulation to the account of the run.
-    pub(super) fn account(&mut self, flow: &EnergyFlow) {
+    /// Adds the energies and works of a simulation to the account of the run. Where nothing `moved`
+    /// the balance is one of rounding, and has no error.
+    pub(super) fn account(&mut self, flow: &EnergyFlow, moved: bool) {
         let Some(start) = flow.start else {
             return;
         };
@@ -202,8 +203,10 @@ impl Session {
         energy.dissipated -= of_damping;
         energy.by_functions += of_functions;
         energy.by_motions += of_motions;
-        energy.scale = energy.scale.max(flow.scale);
-        energy.imbalance = energy.imbalance.max(flow.imbalance);
+        if moved {
+            energy.scale = energy.scale.max(flow.scale);
+            energy.imbalance = energy.imbalance.max(flow.imbalance);
+        }
     }
 }
 

@@ -19,7 +19,7 @@ use crate::analysis::work_limit::ProcessorClock;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::model::ElementKind;
-use crate::numeric::noise;
+use crate::numeric::{Ode, noise};
 use crate::results::{self, Event, Kind, Status};
 use crate::scene::layout::Layout;
 
@@ -63,7 +63,9 @@ impl Session {
             self.warn_of_locks();
         }
         self.note_drift(system, &seen.balance);
-        self.account(&trajectory.energy);
+        let mut typical = vec![0.0; system.scene.layout.n_y()];
+        Ode::typical(system, &mut typical);
+        self.account(&trajectory.energy, !seen.swings.stood_still(&typical));
         if settings.is_auto() && kind == Kind::Dynamic {
             self.stiffness.see(&trajectory, span.end - span.start);
         }
@@ -257,11 +259,16 @@ impl Session {
         }
         let method = trajectory.methods.last().map_or("", |m| &m.1);
         let worked = (method, trajectory.stats.steps, error);
-        let states = (system, seen.looks.rows());
-        if let Some(unsure) = seen.swings.unsure(flow, worked, states) {
+        let rows = seen.looks.rows();
+        if let Some(unsure) = seen.swings.unsure(flow, worked, (system, rows)) {
             self.warn(RunWarning::PhaseUnsure {
                 swings: unsure.swings,
                 off: unsure.off,
+            });
+        } else if let Some(added) = seen.swings.added_up(flow, worked, (system, rows)) {
+            self.warn(RunWarning::ErrorsAddUp {
+                swings: added.swings,
+                requests: added.requests,
             });
         }
     }

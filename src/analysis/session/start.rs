@@ -10,6 +10,7 @@ use super::shells;
 use super::spline_range::{SplineCall, spline_calls};
 use super::state_at_start::Start;
 use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
+use crate::analysis::look::Look;
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::start::{
     coincident, embedded, initial_conditions, leap, misalignment, placement, velocities,
@@ -96,11 +97,13 @@ impl Session {
         let phase = Phase::begin();
         let mut start = Start::new(scene, mode, self.time());
         let first = self.carried.is_none();
-        let (mut assembly, found) = if first {
-            self.assemble(&mut start, before.as_deref())?
-        } else {
-            (self.go_on(&mut start)?, None)
-        };
+        let (mut assembly, found) = self.looking(SetUp::Compiling, watch, |session, look| {
+            if first {
+                session.assemble(&mut start, before.as_deref(), look)
+            } else {
+                Ok((session.go_on(&mut start, look)?, None))
+            }
+        })?;
         self.may_go_on(SetUp::Assembling, watch)?;
         (start.configuration).begin_states(&start.scene, &mut start.x);
         start.begin_turns(self.carried.as_ref());
@@ -186,13 +189,13 @@ impl Session {
     }
 
     /// Goes on from the state of the last simulation.
-    fn go_on(&self, start: &mut Start) -> Result<Assembly, Vec<Diagnostic>> {
+    fn go_on(&self, start: &mut Start, look: Look<'_>) -> Result<Assembly, Vec<Diagnostic>> {
         if let Some(carried) = &self.carried {
             start.take_over(carried);
             self.begin_motions(start, carried);
         }
         start.configuration.external = self.external(start.here(), start.t, &start.q, &start.x)?;
-        start.positions()
+        start.positions(look)
     }
 
     /// Assembles the first state: from the dataset, to initial conditions as far as rows let it; or
@@ -202,6 +205,7 @@ impl Session {
         &mut self,
         start: &mut Start,
         before: Option<&Placed>,
+        look: Look<'_>,
     ) -> Result<Assembled, Vec<Diagnostic>> {
         // the dataset
         if start.mode != KINEMATIC && start.mode != STATIC {
@@ -215,7 +219,7 @@ impl Session {
             Some(assembly) => (assembly, None),
             None => {
                 let drawn = Drawn::of(start);
-                let assembly = self.onto_rows(start)?;
+                let assembly = self.onto_rows(start, look)?;
                 let found = Found {
                     configuration: start.configuration.clone(),
                     q: start.q.clone(),
@@ -237,7 +241,7 @@ impl Session {
 
     /// Moves the first state onto the rows. Masses, springs and gravity have no say in it: what
     /// this is of one model is kept for others.
-    fn onto_rows(&self, start: &mut Start) -> Result<Assembly, Vec<Diagnostic>> {
+    fn onto_rows(&self, start: &mut Start, look: Look<'_>) -> Result<Assembly, Vec<Diagnostic>> {
         let mode = start.mode;
         let joints = mode == DYNAMIC || mode == INITIAL_CONDITIONS;
         let moves = mode != KINEMATIC && mode != STATIC;
@@ -253,7 +257,7 @@ impl Session {
             Vec::new()
         };
         // the rows, and what they did not let be met
-        let (mut assembly, contacts) = (start.assemble(&self.model, joints, &conditions))
+        let (mut assembly, contacts) = (start.assemble(&self.model, joints, &conditions, look))
             .map_err(|said| blamed(&self.model, said))?;
         let (here, t, q, x) = (start.here(), start.t, &start.q, &start.x);
         let warnings = &mut assembly.warnings;
@@ -314,8 +318,9 @@ impl Session {
         y.extend(v);
         y.extend(start.x);
         let hooks = self.hooks.clone();
-        let look = &mut || self.may_go_on(SetUp::Velocities, watch);
-        let mut system = System::recorded_while(start.scene, start.configuration, &hooks, look)?;
+        let mut system = self.looking(SetUp::Velocities, watch, |_, look| {
+            System::recorded_while(start.scene, start.configuration, &hooks, look)
+        })?;
         self.put(&mut system, (t, &y), mode)?;
         Ok(system)
     }

@@ -2,6 +2,7 @@
 //! rows.
 
 use super::carried::Carried;
+use crate::analysis::look::Look;
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::start::dataset::{self, Dataset};
 use crate::analysis::start::initial_conditions::InitialCondition;
@@ -104,12 +105,13 @@ impl Start {
     /// Assembles the dataset; returns where contacts on curves were asked to begin, too.
     ///
     /// # Errors
-    /// Rows that contradict each other.
+    /// Rows that contradict each other, and what `look` answers.
     pub fn assemble(
         &mut self,
         model: &Model,
         joints: bool,
         conditions: &[InitialCondition],
+        look: Look<'_>,
     ) -> Result<(Assembly, Vec<cams::Start>), Vec<Diagnostic>> {
         let drawn = Dataset {
             scene: &self.scene,
@@ -119,16 +121,16 @@ impl Start {
             joints,
             conditions,
         };
-        drawn.assemble(&mut self.configuration, &mut self.q)
+        drawn.assemble_while(&mut self.configuration, &mut self.q, look)
     }
 
     /// Puts positions that a simulation left onto the rows, and chooses those that take part.
     ///
     /// # Errors
-    /// Rows that contradict each other.
-    pub fn positions(&mut self) -> Result<Assembly, Vec<Diagnostic>> {
+    /// Rows that contradict each other, and what `look` answers.
+    pub fn positions(&mut self, look: Look<'_>) -> Result<Assembly, Vec<Diagnostic>> {
         let (scene, configuration) = (&self.scene, &mut self.configuration);
-        dataset::go_on(scene, configuration, self.t, &mut self.q, &self.x)
+        dataset::go_on(scene, configuration, self.t, &mut self.q, &self.x, look)
     }
 }
 

@@ -21,6 +21,7 @@
 //! misalignment: (2) is measured nearby, too.
 
 use crate::analysis::direction::Direction;
+use crate::analysis::look::Look;
 use crate::analysis::quantity::amount;
 use crate::analysis::start::assemble::{self, CLOSED, DEPENDENT, Redundant};
 use crate::analysis::start::nearby::Surroundings;
@@ -66,24 +67,29 @@ const STEPS: [(f64, bool); 5] = [
 /// configuration leave them out. Positions stay as they are.
 ///
 /// # Errors
-/// Rows that are off by more, and lock what the others leave free: which, and by how much.
+/// Rows that are off by more, and lock what the others leave free: which, and by how much; and what
+/// `look` answers, which is asked on the way.
 pub(in crate::analysis) fn leave_out(
     scene: &Scene,
     configuration: &mut Configuration,
     t: f64,
     q: &[f64],
     x: &[f64],
+    look: Look<'_>,
 ) -> Result<(), Vec<Diagnostic>> {
     configuration.loose.clear();
     let Some(search) = Search::new(scene, configuration, t, q, x) else {
         return Ok(());
     };
     let mut q = q.to_vec();
+    look()?;
     if !search.approach(configuration, &mut q) {
         return Ok(());
     }
+    look()?;
     let mut nearly = search.nearly_dependent(configuration, &q);
     while !nearly.is_empty() {
+        look()?;
         // the kept rows, exactly
         let mut trial = configuration.clone();
         trial.loose = nearly.iter().map(|&row| LooseRow::new(row)).collect();

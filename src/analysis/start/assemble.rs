@@ -5,6 +5,7 @@
 //! earlier ones is left out, and is no contradiction as long as it holds.
 
 use crate::analysis::direction::{Axis, Direction};
+use crate::analysis::look::Look;
 use crate::analysis::quantity::{length, short};
 use crate::analysis::start::{alignment, branch, nearby};
 use crate::analysis::warning::{AssemblyWarning, Warning};
@@ -21,6 +22,7 @@ use crate::scene::programs::weights;
 use crate::scene::{RowKind, Scene};
 use crate::space::Frame;
 use nalgebra::{DMatrix, DVector};
+use std::convert::Infallible;
 
 /// Part of a row orthogonal to earlier rows, relative to its length, below which it depends on
 /// them.
@@ -283,6 +285,23 @@ pub(in crate::analysis) fn close(
     x: &[f64],
     ignored: impl Fn(Configured<'_>, usize) -> bool,
 ) -> Closed {
+    let go_on = &mut || Ok::<(), Infallible>(());
+    let Ok(closed) = close_while((scene, configuration), t, q, x, ignored, go_on);
+    closed
+}
+
+/// The same, asking `look` between iterations whether to go on.
+///
+/// # Errors
+/// The answer of `look`.
+pub(super) fn close_while<E>(
+    (scene, configuration): (&Scene, &mut Configuration),
+    t: f64,
+    q: &mut [f64],
+    x: &[f64],
+    ignored: impl Fn(Configured<'_>, usize) -> bool,
+    look: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<Closed, E> {
     let w = weights(scene);
     let mover = Mover::new(scene);
     let worst = |g: &DVector<f64>| {
@@ -307,6 +326,7 @@ pub(in crate::analysis) fn close(
     let mut size = worst(&g);
     let mut iterations = 0;
     while size > 1e-13 && iterations < 100 {
+        look()?;
         let step = least_change(&gradient, &w, &(-&g));
         let longest = step
             .iter()
@@ -334,11 +354,11 @@ pub(in crate::analysis) fn close(
             break;
         }
     }
-    Closed {
+    Ok(Closed {
         iterations,
         size,
         g,
-    }
+    })
 }
 
 /// Moves `q` to positions that satisfy all rows at time `t`, and finds which rows depend on others.
@@ -352,10 +372,27 @@ pub fn positions(
     q: &mut [f64],
     x: &[f64],
 ) -> Result<Assembly, Vec<Diagnostic>> {
+    positions_while(scene, configuration, t, q, x, &mut || Ok(()))
+}
+
+/// The same, asking `look` on the way whether to go on.
+///
+/// # Errors
+/// Those of [`positions`], and what `look` answers.
+pub(super) fn positions_while(
+    scene: &Scene,
+    configuration: &mut Configuration,
+    t: f64,
+    q: &mut [f64],
+    x: &[f64],
+    look: Look<'_>,
+) -> Result<Assembly, Vec<Diagnostic>> {
     let mut found = Assembly::default();
     let start = q.to_vec();
     // all but the rows that will hold what the others leave
-    let closed = close(scene, configuration, t, q, x, |scene, r| scene.is_held(r));
+    let held = |scene: Configured<'_>, r: usize| scene.is_held(r);
+    let closed = close_while((scene, configuration), t, q, x, held, look)?;
+    look()?;
     found.iterations = closed.iterations;
     let here = scene.within(configuration);
     let reached = numbers(here, t, q, &vec![0.0; scene.layout.n_v], x);
@@ -381,14 +418,17 @@ pub fn positions(
     found
         .warnings
         .extend(aligned.into_iter().map(Warning::from));
+    look()?;
     let (_, gradient, _) = rows_at(here, t, q, x);
     let n = scene.layout.n_v;
+    look()?;
     let (independent, dependent) = rank(scene, &gradient, &[]);
+    look()?;
     found.freedom_here = n - independent.len();
     (found.freedom, found.redundant) = (found.freedom_here, dependent.clone());
     let mut active = independent;
     if !dependent.is_empty()
-        && let Some(around) = nearby::look(here, t, q, x, &active)
+        && let Some(around) = nearby::look(here, t, q, x, &active, look)?
     {
         // rows that depend on others here and nowhere else take part
         found.freedom = n - around.independent.len();

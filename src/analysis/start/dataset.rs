@@ -5,6 +5,7 @@
 //! (`branch.rs`), and the rest again from there. The first outcome stands where none of these is
 //! better.
 
+use crate::analysis::look::Look;
 use crate::analysis::start::alignment;
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::start::branch;
@@ -56,10 +57,24 @@ impl<'a> Dataset<'a> {
     /// # Errors
     /// Rows that contradict each other.
     pub fn assemble(&self, configuration: &mut Configuration, q: &mut [f64]) -> Assembled {
+        self.assemble_while(configuration, q, &mut || Ok(()))
+    }
+
+    /// The same, asking `look` on the way whether to go on.
+    ///
+    /// # Errors
+    /// Rows that contradict each other, and what `look` answers.
+    pub(in crate::analysis) fn assemble_while(
+        &self,
+        configuration: &mut Configuration,
+        q: &mut [f64],
+        look: Look<'_>,
+    ) -> Assembled {
         let (scene, t, x) = (self.scene, self.t, self.x);
         branch::refer(scene, configuration, t, q, x, true);
         let drawn = (configuration.clone(), q.to_vec());
-        let first = self.near(configuration, q, true);
+        let first = self.near(configuration, q, true, look);
+        look()?;
         let right = |configuration: &Configuration, q: &[f64]| {
             !branch::is_opposite(scene, configuration, &drawn.0, t, q, x)
         };
@@ -74,7 +89,8 @@ impl<'a> Dataset<'a> {
             // placed near the drawing, or else where the turns have led
             for placed in [true, false] {
                 let (mut other, mut p) = (turned.clone(), there.clone());
-                let second = self.near(&mut other, &mut p, placed);
+                let second = self.near(&mut other, &mut p, placed, look);
+                look()?;
                 if second.is_ok() && right(&other, &p) {
                     *configuration = other;
                     q.copy_from_slice(&p);
@@ -86,9 +102,16 @@ impl<'a> Dataset<'a> {
     }
 
     /// Moves `q` onto the rows, from where it is, or from the place nearest to the drawing.
-    fn near(&self, configuration: &mut Configuration, q: &mut [f64], placed: bool) -> Assembled {
+    fn near(
+        &self,
+        configuration: &mut Configuration,
+        q: &mut [f64],
+        placed: bool,
+        look: Look<'_>,
+    ) -> Assembled {
         let Self { scene, t, x, .. } = *self;
-        alignment::leave_out(scene, configuration, t, q, x)?;
+        alignment::leave_out(scene, configuration, t, q, x, look)?;
+        look()?;
         let here = scene.within(configuration);
         let placed = placed && placement::settle(here, self.model, t, q, x, self.joints);
         // where parts are too many to be weighed, or on curves, coordinates move as little as may
@@ -99,7 +122,8 @@ impl<'a> Dataset<'a> {
         } else {
             initial_conditions::approach(scene, configuration, self.conditions, t, q, x)
         };
-        let assembly = assemble::positions(scene, configuration, t, q, x)?;
+        look()?;
+        let assembly = assemble::positions_while(scene, configuration, t, q, x, look)?;
         Ok((assembly, starts))
     }
 }
@@ -108,18 +132,20 @@ impl<'a> Dataset<'a> {
 /// that take part.
 ///
 /// # Errors
-/// Rows that contradict each other.
-pub fn go_on(
+/// Rows that contradict each other, and what `look` answers, which is asked on the way.
+pub(in crate::analysis) fn go_on(
     scene: &Scene,
     configuration: &mut Configuration,
     t: f64,
     q: &mut [f64],
     x: &[f64],
+    look: Look<'_>,
 ) -> Result<Assembly, Vec<Diagnostic>> {
     branch::refer(scene, configuration, t, q, x, false);
-    alignment::leave_out(scene, configuration, t, q, x)?;
+    alignment::leave_out(scene, configuration, t, q, x, look)?;
     let left = (configuration.clone(), q.to_vec());
-    let first = assemble::positions(scene, configuration, t, q, x);
+    let first = assemble::positions_while(scene, configuration, t, q, x, look);
+    look()?;
     // rows that held where it was left have been followed to there
     let followed = matches!(&first, Ok(assembly) if assembly.iterations == 0);
     if followed || first.is_ok() && !branch::is_opposite(scene, configuration, &left.0, t, q, x) {
@@ -130,7 +156,8 @@ pub fn go_on(
         if !branch::turn(scene, &mut other, t, &mut p, x, normal) {
             continue;
         }
-        let second = assemble::positions(scene, &mut other, t, &mut p, x);
+        let second = assemble::positions_while(scene, &mut other, t, &mut p, x, look);
+        look()?;
         if second.is_ok() && !branch::is_opposite(scene, &other, &left.0, t, &p, x) {
             *configuration = other;
             q.copy_from_slice(&p);

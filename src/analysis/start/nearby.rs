@@ -5,7 +5,9 @@
 //! again; rows that are independent there were dependent in passing only (a folded parallelogram, a
 //! four-bar at its dead point). When no other position can be reached, what was found stands.
 
+use crate::analysis::look::Look;
 use crate::analysis::start::assemble::{self, CLOSED, Redundant};
+use crate::diagnostic::Diagnostic;
 use crate::numeric::connected::SparseRow;
 use crate::numeric::rank::Rank;
 use crate::scene::Scene;
@@ -52,14 +54,28 @@ const STEPS: [(f64, bool); 9] = [
 /// other position was found.
 ///
 /// `here`: rows that are independent at `q`; they are preferred.
-pub fn look(scene: Configured<'_>, t: f64, q: &[f64], x: &[f64], here: &[usize]) -> Option<Around> {
-    let mut around = Surroundings::new(scene, t, q, x)?;
+///
+/// # Errors
+/// The answer of `go_on`, which is asked between the places.
+pub(super) fn look(
+    scene: Configured<'_>,
+    t: f64,
+    q: &[f64],
+    x: &[f64],
+    here: &[usize],
+    go_on: Look<'_>,
+) -> Result<Option<Around>, Vec<Diagnostic>> {
+    let Some(mut around) = Surroundings::new(scene, t, q, x) else {
+        return Ok(None);
+    };
     let mut best: Option<Around> = None;
     let mut seen = 0;
     for step in STEPS {
+        go_on()?;
         let Some((place, there)) = around.step(step) else {
             continue;
         };
+        go_on()?;
         let (_, gradient, _) = assemble::rows_at(scene.within(&there), t, &place.q, x);
         let (independent, redundant) = assemble::rank(&scene, &gradient, here);
         if best
@@ -77,7 +93,7 @@ pub fn look(scene: Configured<'_>, t: f64, q: &[f64], x: &[f64], here: &[usize])
             break;
         }
     }
-    best.filter(|b| b.independent.len() >= here.len())
+    Ok(best.filter(|b| b.independent.len() >= here.len()))
 }
 
 /// Positions near another, along random free directions.

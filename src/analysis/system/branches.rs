@@ -230,6 +230,14 @@ impl Branches {
         }
     }
 
+    /// Returns whether the numbers say the same branches as are held.
+    pub(super) fn are_held_at(&mut self, numbers: &[f64]) -> bool {
+        let mut values = vec![0.0; self.len()];
+        self.values(numbers, &mut values);
+        let mut pairs = values.iter().zip(&self.sides);
+        pairs.all(|(value, side)| value * side >= 0.0)
+    }
+
     /// Returns how long a step from a state may be so that no angle which decides a branch turns by
     /// more than [`MAX_TURN_PER_STEP`]: a free flight or a free rotation leaves long steps no
     /// reason to become shorter, and a branch may come and go in every turn.

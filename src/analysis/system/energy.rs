@@ -9,9 +9,10 @@ use crate::scene::Scene;
 use crate::scene::layout::LongRow;
 use crate::scene::programs::record_more;
 
-/// Part of a weight by which nodes at the ends of a step are moved inwards: a force may jump where
-/// a step ends, and the step lies on one side.
-const INWARDS: f64 = 1e-8;
+/// Parts of a step by which nodes at its ends are moved inwards: a force may jump where a step
+/// ends, and the step lies on one side. The first is enough where no branch changes; the others
+/// are tried where the branches there are not those of the step.
+const INWARDS: [f64; 4] = [1e-8, 1e-6, 1e-4, 1e-2];
 
 /// The program of energy and powers, and what it reads.
 #[derive(Clone, Debug)]
@@ -91,18 +92,62 @@ impl System {
 
     /// Returns the powers at a node of a step, if they are watched.
     pub(in crate::analysis) fn powers(&mut self, [t0, t1]: [f64; 2], node: Node) -> Option<Powers> {
-        let inwards = INWARDS * (t1 - t0);
-        let delta = (t0 + inwards - node.t).max(0.0) + (t1 - inwards - node.t).min(0.0);
-        let moved = node.y.iter().zip(node.ydot).map(|(y, f)| y + delta * f);
+        if self.recorded.branches.is_sliding() {
+            return self.aside(|system| system.mean_powers(node));
+        }
         let mut state = std::mem::take(&mut self.stage);
-        state.clear();
-        state.extend(moved);
+        let mut t = node.t;
+        for part in INWARDS {
+            let inwards = part * (t1 - t0);
+            let delta = (t0 + inwards - node.t).max(0.0) + (t1 - inwards - node.t).min(0.0);
+            state.clear();
+            state.extend(node.y.iter().zip(node.ydot).map(|(y, f)| y + delta * f));
+            t = node.t + delta;
+            if delta == 0.0 || self.is_on_held_branch(t, &state) {
+                break;
+            }
+        }
         let vdot = self.scene.layout.state(node.ydot).v;
-        let values = self.run_energy(node.t + delta, &state, vdot);
-        let power = |v: &[f64], k: usize| v.get(2 + k).copied().unwrap_or(0.0);
-        let powers = values.map(|v| std::array::from_fn(|k| power(v, k)));
+        let powers = self.run_energy(t, &state, vdot).map(powers_of);
         self.stage = state;
         powers
+    }
+
+    /// Returns the powers at a node of a step along which the motion stays where functions change
+    /// branch: the mean of those of the branches.
+    fn mean_powers(&mut self, node: Node) -> Option<Powers> {
+        let kept = self.numbers.clone();
+        let row = self.numbers_at(node.t, node.y);
+        let branches = self.rows_of_branches(&row);
+        let (y, vdot) = (self.scene.layout.y(), self.scene.layout.state(node.ydot).v);
+        let mut mean = Some([0.0; 4]);
+        for (part, row) in branches {
+            let powers = self
+                .run_energy(node.t, &row[y.clone()], vdot)
+                .map(powers_of);
+            mean = mean
+                .zip(powers)
+                .map(|(mut mean, powers): (Powers, Powers)| {
+                    (mean.iter_mut().zip(powers)).for_each(|(m, power)| *m += part * power);
+                    mean
+                });
+        }
+        self.numbers.copy_from_slice(&kept);
+        mean
+    }
+
+    /// Returns whether the functions are at a state on the branches that are held.
+    fn is_on_held_branch(&mut self, t: f64, state: &[f64]) -> bool {
+        if !self.recorded.branches.is_holding() {
+            return true;
+        }
+        let mut numbers = self.numbers.clone();
+        self.scene.layout.set_state(&mut numbers, t, state);
+        let branches = &mut self.recorded.branches;
+        branches.exchange_traces();
+        let holds = branches.are_held_at(&numbers);
+        branches.exchange_traces();
+        holds
     }
 
     /// Returns the powers of forces at a state: given back by what stores energy, of damping and
@@ -128,4 +173,9 @@ impl System {
         let energy = self.energy.insert(energy);
         Some(&energy.program.values)
     }
+}
+
+/// Returns the powers among the values of the program.
+fn powers_of(values: &[f64]) -> Powers {
+    std::array::from_fn(|k| values.get(2 + k).copied().unwrap_or(0.0))
 }

@@ -42,6 +42,7 @@ pub(super) mod time_events;
 mod tunnelling;
 pub mod turns;
 
+use crate::analysis::look;
 use crate::diagnostic::{Diagnostic, Error};
 use crate::expr::program::Program;
 use crate::numeric::Ode;
@@ -126,7 +127,7 @@ impl System {
         scene: Arc<Scene>,
         mut configuration: Configuration,
         hooks: &[Hook],
-        look: recorded::Look<'_>,
+        look: look::Look<'_>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let lent_inertia = recorded::lent_inertia(scene.within(&configuration));
         configuration.elimination = Elimination {

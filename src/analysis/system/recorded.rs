@@ -21,6 +21,7 @@ use super::sensors::Sensors;
 use super::time_events::TimeEvents;
 use super::tunnelling::ThicknessBounds;
 use super::turns::Turns;
+use crate::analysis::look::Look;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::scene::articulated::ArticulatedFactor;
@@ -74,10 +75,6 @@ pub(in crate::analysis) struct Recorded {
     /// rates of the states downstream of the mechanism; `None`: there are none
     pub downstream: Option<Box<DownstreamRates>>,
 }
-
-/// Asked between the programs of a recording whether it is to go on; the answer to a caller who
-/// does not want that is an error.
-pub(in crate::analysis) type Look<'a> = &'a mut dyn FnMut() -> Result<(), Vec<Diagnostic>>;
 
 impl Recorded {
     /// Records the programs of a scene, and chooses how accelerations are eliminated: pivots are

@@ -122,6 +122,13 @@ pub enum RunWarning {
         /// error of the phase that may have added up, rad
         off: f64,
     },
+    /// errors of many undamped swings have added up to many times the request
+    ErrorsAddUp {
+        /// number of swings
+        swings: f64,
+        /// about how far off the swings may be, over their width and the request
+        requests: f64,
+    },
     /// stability, not accuracy, sets the steps of an explicit method
     StabilityLimited {
         /// number of such steps
@@ -159,6 +166,7 @@ impl RunWarning {
             RunWarning::EnergyGrows { .. } => "energy_grows",
             RunWarning::EnergyUnsure { .. } => "energy_unsure",
             RunWarning::PhaseUnsure { .. } => "phase_unsure",
+            RunWarning::ErrorsAddUp { .. } => "errors_add_up",
             RunWarning::CompanionEnded { .. } => "accuracy_unknown",
         }
     }
@@ -185,6 +193,7 @@ impl RunWarning {
             | RunWarning::RoundingAddsUp { .. }
             | RunWarning::EnergyUnsure { .. }
             | RunWarning::PhaseUnsure { .. }
+            | RunWarning::ErrorsAddUp { .. }
             | RunWarning::StabilityLimited { .. }
             | RunWarning::CompanionEnded { .. } => None,
         }
@@ -261,6 +270,7 @@ impl RunWarning {
             RunWarning::EnergyGrows { factor, fed_by } => growth(*factor, fed_by.is_some()),
             RunWarning::EnergyUnsure { share } => energy(*share),
             RunWarning::PhaseUnsure { swings, off } => phase(*swings, *off),
+            RunWarning::ErrorsAddUp { swings, requests } => errors_add_up(*swings, *requests),
             RunWarning::StabilityLimited { limited, steps } => format!(
                 "the model is stiff: in {limited} of {steps} steps stability, not the error asked \
                  for, kept an explicit method short; RADAU5 or AUTO takes longer ones"
@@ -284,6 +294,15 @@ fn phase(swings: f64, off: f64) -> String {
     format!(
         "the phase of about {swings:.0} swings is {known}: errors may have added up to {off:.1} rad \
          in the end; a smaller ERROR keeps it, and --accuracy says from when on it is lost"
+    )
+}
+
+/// Returns how far the errors of undamped swings have added up, over the request.
+fn errors_add_up(swings: f64, requests: f64) -> String {
+    format!(
+        "nothing slows about {swings:.0} swings down, so their errors add up: over their width to some \
+         {requests:.0} times the error asked for; a smaller ERROR makes it less, and --accuracy says \
+         how far off results are"
     )
 }
 

@@ -234,6 +234,17 @@ it is, and from when on the phase is lost.
     cognate run model.acf --error 1e-10  instead of 1e-6",
     },
     Code {
+        name: "errors_add_up",
+        summary: "errors of many undamped swings have added up to many times the request",
+        explanation: "\
+ERROR is permitted in each step, in proportion to which a swing adds its error. Where nothing slows the motion down, the errors of all
+swings stay: a method of second order (HHT, NEWMARK) adds about one ERROR a swing, BDF up to half of one, DOP853 and RADAU5 a fortieth.
+The amplitude and the number of swings are better than that. Bars of error (--accuracy) say how far off results are.
+
+    cognate run model.acf --error 1e-6   instead of 1e-4
+    cognate run model.acf --method AUTO  instead of HHT",
+    },
+    Code {
         name: "stiff",
         summary: "stability, not accuracy, sets the steps of an explicit method",
         explanation: "\
