@@ -250,6 +250,35 @@ fn a_driven_joint_is_a_driven_pair_of_markers() {
 }
 
 #[test]
+fn a_gcon_between_markers_of_one_body_moves_nothing() {
+    let mut random = 0.5_f64;
+    let mut draw = move || {
+        random = (random * 997.3 + 0.137).fract();
+        4000.0 * random - 2000.0
+    };
+    for _ in 0..24 {
+        let [x, y, z, a, b, c] = std::array::from_fn(|_| draw());
+        let (alpha, beta, gamma) = (a / 1000.0, b.abs() / 700.0, c / 1000.0);
+        let text = format!(
+            "UNITS/SYSTEM=MKS\nPART/2, MASS=1, CM=20, IP=1,2,3, QG={x},{y},{z}, REULER={alpha},{beta},{gamma}\n\
+             MARKER/20, PART=2\nMARKER/21, PART=2, QP={a},{b},{c}, REULER={gamma},{alpha},{beta}\n\
+             PART/3, MASS=1, CM=30, IP=1,2,3, QG={x},{y},{z}, REULER={alpha},{beta},{gamma}\nMARKER/30, PART=3\n\
+             MARKER/31, PART=3, QP={y},{z},{a}\nMARKER/11, PART=1, QP={x},{y},{z}\nJOINT/1, HOOKE, I=20, J=12\n\
+             MARKER/12, PART=1, QP={x},{y},{z}, REULER={alpha},{beta},{gamma}\nJOINT/2, FIXED, I=30, J=20\n"
+        );
+        let distance = (a - y).hypot(b - z).hypot(c - a);
+        let text = text + &format!("GCON/1, I=21, FUNCTION=DM(21,31)-{distance}\n");
+        let s = run(&text, &["PSI(20,12)", "THETA(20,12)"], 1e-3, 1);
+        let told = s.run.record.warned();
+        assert!(
+            told.iter().all(|w| !w.contains("is turned")),
+            "{told:?}\n{text}"
+        );
+        assert!(off(&s, "THETA(20,12)", |_| 0.0) < 1e-6, "{text}");
+    }
+}
+
+#[test]
 fn a_motion_given_by_its_acceleration_begins_with_the_velocities_of_the_parts() {
     let bodies = "PART/2, MASS=2, CM=20, IP=1,1,1, QG=1,0,0, WZ=W1\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=-1,0,0\n\
                   MARKER/22, PART=2, QP=1,0,0\nPART/3, MASS=1, CM=30, IP=1,1,1, QG=3,0,0, WZ=W2\nMARKER/30, PART=3\n\
