@@ -27,7 +27,8 @@ use crate::expr::program::Input;
 use crate::model::ElementKind;
 use std::collections::BTreeSet;
 
-/// Change of a GCON's expression, as a part of the mechanism's length or of 1 rad, that is rounding.
+/// Change of a GCON's expression that is rounding, as a part of the mechanism's length or of
+/// 1 rad.
 const IDLE_CHANGE: f64 = 1e-11;
 
 impl Builder<'_> {
