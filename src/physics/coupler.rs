@@ -75,6 +75,19 @@ impl Gauge {
         }
     }
 
+    /// Returns the part of the axis whose angle is read that stands square to the plane in which
+    /// it is read; 0 for distances. The angle leaps by half a turn where the rest of the axis
+    /// vanishes.
+    pub fn out_of_plane(self, i: &Frame<f64>, j: &Frame<f64>) -> f64 {
+        let dot = |of_i: usize, of_j: usize| i.rotation.column(of_i).dot(j.rotation.column(of_j));
+        match self {
+            Gauge::Distance | Gauge::Across(_) => 0.0,
+            Gauge::Angle(about) => dot(0, about),
+            Gauge::Pin { hooke: true, .. } => dot(0, 1),
+            Gauge::Pin { hooke: false, .. } => dot(2, 2),
+        }
+    }
+
     /// Returns whether the displacement is an angle.
     pub fn is_angle(self) -> bool {
         matches!(self, Gauge::Angle(_) | Gauge::Pin { .. })

@@ -130,12 +130,12 @@ impl Law {
 
     /// Returns the value of `drive` at which a driven law holds; an angle as its principal value,
     /// on the side of the drive's reference.
-    pub fn shown(self, i: &Frame<f64>, j: &Frame<f64>, drive: Drive<f64>) -> f64 {
+    pub fn shown<S: Scalar>(self, i: &Frame<S>, j: &Frame<S>, drive: Drive<S>) -> S {
         if let Law::BodyAngle { angle, beside } = self {
             let (y, x) = body_angle((angle, beside), i, j, &drive, None);
             return y.atan2(x);
         }
-        let at = |drive: f64| self.value(i, j, Some(Drive::of(drive)));
+        let at = |drive: f64| self.value(i, j, Some(Drive::of(S::constant(drive))));
         if self.is_length() {
             at(0.0)
         } else {
@@ -210,10 +210,25 @@ fn signed_cosine<S: Scalar>(y: S, x: S, drive: &Drive<S>, cosine: Option<S>) -> 
     S::select(lost, along, signed)
 }
 
-/// Returns the body 1-2-3 angles of I in J that turn least about the first and the last axis: of
-/// the two triples of a rotation the one with the smaller `|β₁| + |β₃|`; the principal one
-/// (cos β₂ ≥ 0) where these are equal.
+/// Turn about the first and the last axis together below which I counts as turned against J about
+/// the middle one, in rad.
+const ABOUT_THE_MIDDLE: f64 = std::f64::consts::FRAC_PI_4;
+
+/// Returns the body 1-2-3 angles of I in J: the principal triple (cos β₂ ≥ 0), but beyond ±90° the
+/// other one where I is turned about the middle axis and hardly about others.
 pub fn body_angles(i: &Frame<f64>, j: &Frame<f64>) -> [f64; 3] {
+    about_the_middle(i, j).unwrap_or_else(|| both_triples(i, j)[0])
+}
+
+/// Returns the triple of body angles that turns I against J about the middle axis and hardly about
+/// others; `None`: neither does.
+pub fn about_the_middle(i: &Frame<f64>, j: &Frame<f64>) -> Option<[f64; 3]> {
+    let hardly = |b: &[f64; 3]| b[0].abs() + b[2].abs() < ABOUT_THE_MIDDLE;
+    both_triples(i, j).into_iter().find(hardly)
+}
+
+/// Returns both triples of body 1-2-3 angles of I in J, the principal one first.
+fn both_triples(i: &Frame<f64>, j: &Frame<f64>) -> [[f64; 3]; 2] {
     let r = |row: usize, column: usize| j.rotation.column(row).dot(i.rotation.column(column));
     let cosine = r(1, 2).hypot(r(2, 2));
     let first = [
@@ -226,10 +241,5 @@ pub fn body_angles(i: &Frame<f64>, j: &Frame<f64>) -> [f64; 3] {
         r(0, 2).atan2(-cosine),
         r(0, 1).atan2(-r(0, 0)),
     ];
-    let outer = |b: &[f64; 3]| b[0].abs() + b[2].abs();
-    if outer(&second) < outer(&first) - 1e-9 {
-        second
-    } else {
-        first
-    }
+    [first, second]
 }

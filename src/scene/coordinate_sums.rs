@@ -5,7 +5,9 @@
 //! Such a displacement has a constant gradient, and an angle needs no counted turns. Whether a
 //! displacement is one is asked of the scene itself: its gradient along the freedoms of the forest
 //! is the same at several configurations drawn at random only if it is the same everywhere, for an
-//! analytic function of the coordinates.
+//! analytic function of the coordinates. An angle is one where its axis keeps its inclination to
+//! the plane in which the angle is read; elsewhere it leaps by half a turn as the axis passes the
+//! normal, as AZ does across the second pin of a universal joint.
 //!
 //! An angle is the same after a turn of any coordinate, so its factors of angular coordinates are
 //! whole numbers: they are rounded to these, and no turn is lost however many there are.
@@ -44,6 +46,18 @@ impl Reading {
                 kinematic(measure, &i, &j, &ground, &ground)
                     .unwrap_or_else(|| S::constant(f64::NAN))
             }
+        }
+    }
+
+    /// Returns the part of the axis whose angle is read that stands square to the plane in which it
+    /// is read; 0 for distances.
+    fn out_of_plane(self, i: &Frame<f64>, j: &Frame<f64>) -> f64 {
+        let dot = |of_i: usize, of_j: usize| i.rotation.column(of_i).dot(j.rotation.column(of_j));
+        match self {
+            Reading::Gauge(gauge) => gauge.out_of_plane(i, j),
+            Reading::Measure(Measure::Ax) => dot(2, 0),
+            Reading::Measure(Measure::Ay) => dot(2, 1),
+            Reading::Measure(_) => dot(0, 2),
         }
     }
 
@@ -98,6 +112,7 @@ impl Draws {
         let (first, others) = self.all(scene).split_first()?;
         let moving = Moving::between(scene, i, j);
         let start = first.value_of(scene, reading, i, j);
+        let inclination = first.out_of_plane(scene, reading, i, j);
         let gradient = first.gradient(scene, reading, (i, j), &moving);
         // a third of a ball has no coordinate whose value could be summed
         let in_ball = |&(k, g): &(usize, f64)| g.abs() > SAME_GRADIENT && scene.freedoms[k].in_ball;
@@ -105,6 +120,10 @@ impl Draws {
             return None;
         }
         for other in others {
+            let leans = other.out_of_plane(scene, reading, i, j) - inclination;
+            if leans.abs() > 100.0 * SAME_GRADIENT || leans.is_nan() {
+                return None;
+            }
             let value = other.value_of(scene, reading, i, j);
             let there = other.gradient(scene, reading, (i, j), &moving);
             let mut rest = value - start;
@@ -252,6 +271,16 @@ impl Draw {
 
     fn value_of(&self, scene: &Scene, reading: Reading, i: Option<usize>, j: Option<usize>) -> f64 {
         reading.value(&self.frame(scene, i), &self.frame(scene, j))
+    }
+
+    fn out_of_plane(
+        &self,
+        scene: &Scene,
+        reading: Reading,
+        i: Option<usize>,
+        j: Option<usize>,
+    ) -> f64 {
+        reading.out_of_plane(&self.frame(scene, i), &self.frame(scene, j))
     }
 
     /// Returns the derivative of a reading along every freedom that moves I against J.

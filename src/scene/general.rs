@@ -27,6 +27,10 @@ use crate::expr::program::Input;
 use crate::model::ElementKind;
 use std::collections::BTreeSet;
 
+/// Change of a GCON's expression that is rounding, as a part of the mechanism's length or of
+/// 1 rad.
+const IDLE_CHANGE: f64 = 1e-11;
+
 impl Builder<'_> {
     /// One row for each GCON.
     pub(super) fn general(&mut self, c: &mut Compiler) {
@@ -115,10 +119,12 @@ impl Builder<'_> {
                     .iter()
                     .map(|&(v, g)| g.abs() * weights[v].sqrt())
                     .fold(0.0, f64::max);
-                Some(if size > 0.0 && size.is_finite() {
+                // what moves nothing changes by rounding alone
+                let idle = scene.length.max(1.0);
+                Some(if size > IDLE_CHANGE * idle && size.is_finite() {
                     size
                 } else {
-                    1.0
+                    idle
                 })
             })
             .collect();

@@ -190,6 +190,69 @@ proptest! {
     }
 }
 
+/// Two pins that cross: MARKER/20 turned by `a` about z of MARKER/1, a quarter turn about x, and `b` about its own z.
+const CROSSED_PINS: [&str; 3] = [
+    "JOINT/1, UNIVERSAL, I=20, J=1\n",
+    "MARKER/22, PART=2, REULER=180D, 90D, 90D\nMARKER/12, PART=1, REULER=90D, 90D, 0\nJOINT/1, HOOKE, I=22, J=12\n",
+    "PART/3, MASS=1, CM=30, IP=1,1,1, REULER=START\nMARKER/30, PART=3\nMARKER/31, PART=3, REULER=0, 90D, 0\n\
+     JOINT/1, REVOLUTE, I=30, J=1\nJOINT/2, REVOLUTE, I=20, J=31\n",
+];
+
+proptest! {
+    #![proptest_config(config(32))]
+
+    #[test]
+    fn angles_across_two_pins_are_those_of_the_axes(which in 0usize..3, a in -PI..PI, b in -PI..PI, spin in [-3.0..3.0f64, -3.0..3.0f64, -3.0..3.0f64]) {
+        let [x, y, z] = spin;
+        let text = format!(
+            "PART/2, MASS=1, CM=20, IP=1,2,3, REULER={a}, 90D, {b}, WX={x}, WY={y}, WZ={z}\nMARKER/20, PART=2\n{}",
+            CROSSED_PINS[which].replace("START", &format!("{a}, 0, 0"))
+        );
+        let columns = ["AX(20,1)", "AY(20,1)", "AZ(20,1)", "PSI(20,1)", "THETA(20,1)", "PHI(20,1)"];
+        let mut s = session(&text, &columns, 1e-8);
+        go(&mut s, Analysis::Dynamic, 2.0, 40);
+        let all = columns.map(|c| values(&s, c));
+        for row in 0..all[0].len() {
+            let [.., psi, theta, phi] = all.map(|c| c[row]);
+            let r = from_313([psi, theta, phi]);
+            let read = [(-r[1][2], r[2][2]), (r[0][2], r[2][2]), (r[1][0], r[0][0])];
+            for (k, (s, c)) in read.into_iter().enumerate() {
+                let off = all[k][row] - s.atan2(c);
+                let off = off - TAU * (off / TAU).round();
+                prop_assert!(off.abs() * s.hypot(c) < 1e-6, "{}: off by {off} in row {row}\n{text}", columns[k]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_second_body_angle_begins_where_it_is_drawn(
+        part in angles(), marker in angles(), ground in angles(), speed in -2.0..2.0f64
+    ) {
+        let r = product(&[transposed(&from_313(ground)), from_313(part), from_313(marker)]);
+        let (angle, cosine) = (r[0][2].asin(), r[1][2].hypot(r[2][2]));
+        prop_assume!(cosine > 0.1);
+        // the other triple turns about y alone where it hardly turns about x and z
+        let others = r[1][2].atan2(-r[2][2]).abs() + r[0][1].atan2(-r[0][0]).abs();
+        prop_assume!(others > 0.3 * PI);
+        for motion in [
+            format!("FUNCTION={angle}+{speed}*TIME"),
+            format!("VELOCITY, FUNCTION={speed}"),
+            format!("ACCELERATION, ICVEL={speed}, FUNCTION=0"),
+        ] {
+            let text = ball(part, marker, ground) + &format!("MOTION/1, I=21, J=11, B2, {motion}\n");
+            let columns = ["WY(21,11,11)", "WZ(21,11,11)", EULER[0], EULER[1], EULER[2]];
+            let mut s = session(&text, &columns, 1e-6);
+            go(&mut s, Analysis::Dynamic, 1e-6, 1);
+            let begun = from_313(EULER.map(|c| first(&s, c)));
+            let moved = (0..3).map(|k| distance(&begun[k], &r[k])).fold(0.0, f64::max);
+            prop_assert!(moved < 1e-6, "turned by {moved}\n{text}");
+            // of sin B2 = x of z of I
+            let rate = first(&s, "WY(21,11,11)") * r[2][2] - first(&s, "WZ(21,11,11)") * r[1][2];
+            prop_assert!((rate - cosine * speed).abs() < 1e-6, "{rate} for {}\n{text}", cosine * speed);
+        }
+    }
+}
+
 /// A pendulum on the part, so that the mechanism has a freedom.
 const PENDULUM: &str = "PART/3, MASS=0.001, CM=30, IP=1E-3,1E-3,1E-3\nMARKER/30, PART=3\nMARKER/23, PART=2\n\
                         JOINT/3, REVOLUTE, I=30, J=23\n";

@@ -249,6 +249,78 @@ fn a_driven_joint_is_a_driven_pair_of_markers() {
     }
 }
 
+#[test]
+fn a_gcon_between_markers_of_one_body_moves_nothing() {
+    let mut random = 0.5_f64;
+    let mut draw = move || {
+        random = (random * 997.3 + 0.137).fract();
+        4000.0 * random - 2000.0
+    };
+    for _ in 0..24 {
+        let [x, y, z, a, b, c] = std::array::from_fn(|_| draw());
+        let (alpha, beta, gamma) = (a / 1000.0, b.abs() / 700.0, c / 1000.0);
+        let text = format!(
+            "UNITS/SYSTEM=MKS\nPART/2, MASS=1, CM=20, IP=1,2,3, QG={x},{y},{z}, REULER={alpha},{beta},{gamma}\n\
+             MARKER/20, PART=2\nMARKER/21, PART=2, QP={a},{b},{c}, REULER={gamma},{alpha},{beta}\n\
+             PART/3, MASS=1, CM=30, IP=1,2,3, QG={x},{y},{z}, REULER={alpha},{beta},{gamma}\nMARKER/30, PART=3\n\
+             MARKER/31, PART=3, QP={y},{z},{a}\nMARKER/11, PART=1, QP={x},{y},{z}\nJOINT/1, HOOKE, I=20, J=12\n\
+             MARKER/12, PART=1, QP={x},{y},{z}, REULER={alpha},{beta},{gamma}\nJOINT/2, FIXED, I=30, J=20\n"
+        );
+        let distance = (a - y).hypot(b - z).hypot(c - a);
+        let text = text + &format!("GCON/1, I=21, FUNCTION=DM(21,31)-{distance}\n");
+        let s = run(&text, &["PSI(20,12)", "THETA(20,12)"], 1e-3, 1);
+        let told = s.run.record.warned();
+        assert!(
+            told.iter().all(|w| !w.contains("is turned")),
+            "{told:?}\n{text}"
+        );
+        assert!(off(&s, "THETA(20,12)", |_| 0.0) < 1e-6, "{text}");
+    }
+}
+
+#[test]
+fn a_motion_given_by_its_acceleration_begins_with_the_velocities_of_the_parts() {
+    let bodies = "PART/2, MASS=2, CM=20, IP=1,1,1, QG=1,0,0, WZ=W1\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=-1,0,0\n\
+                  MARKER/22, PART=2, QP=1,0,0\nPART/3, MASS=1, CM=30, IP=1,1,1, QG=3,0,0, WZ=W2\nMARKER/30, PART=3\n\
+                  MARKER/31, PART=3, QP=-1,0,0\nJOINT/1, REVOLUTE, I=21, J=1\nJOINT/2, REVOLUTE, I=31, J=22\n\
+                  PART/4, MASS=1, CM=40, IP=1,1,1, QG=0,5,0, VX=V\nMARKER/40, PART=4\nMARKER/41, PART=4, REULER=90D, 90D, 0\n\
+                  MARKER/14, PART=1, QP=0,5,0, REULER=90D, 90D, 0\nJOINT/3, TRANSLATIONAL, I=41, J=14\nACCGRAV/JGRAV=-9.81\n";
+    let columns = ["AZ(31,22)", "DX(40,1)", "AZ(21,1)"];
+    for (w1, w2, v) in [(2.0, -3.0, 0.5), (0.0, 1.5, -4.0), (-1.0, -1.0, 0.0)] {
+        let bodies = (bodies
+            .replace("W1", &format!("{w1}"))
+            .replace("W2", &format!("{w2}")))
+        .replace("VX=V", &format!("VX={v}"));
+        for motions in [
+            "MOTION/2, JOINT=2, ROTATION, ACCELERATION, FUNCTION=2\nMOTION/3, JOINT=3, TRANSLATION, ACCELERATION, FUNCTION=-3\n",
+            "MOTION/2, I=31, J=22, B3, ACCELERATION, FUNCTION=2\nMOTION/3, I=40, J=1, X, ACCELERATION, FUNCTION=-3\n",
+            "MOTION/1, JOINT=1, ACCELERATION, FUNCTION=1\nMOTION/2, JOINT=2, ACCELERATION, FUNCTION=2\n\
+             MOTION/3, JOINT=3, ACCELERATION, FUNCTION=-3\n",
+        ] {
+            let s = run(&format!("{bodies}{motions}"), &columns, 1.0, 10);
+            let told = s.run.record.warned();
+            assert!(
+                told.iter().all(|w| !w.contains("cannot be met")),
+                "{told:?}"
+            );
+            assert!(
+                off(&s, "AZ(31,22)", |t| (w2 - w1) * t + t * t) < 1e-6,
+                "{motions}"
+            );
+            assert!(
+                off(&s, "DX(40,1)", |t| v * t - 1.5 * t * t) < 1e-6,
+                "{motions}"
+            );
+            if motions.contains("MOTION/1") {
+                assert!(
+                    off(&s, "AZ(21,1)", |t| w1 * t + 0.5 * t * t) < 1e-6,
+                    "{motions}"
+                );
+            }
+        }
+    }
+}
+
 const R: f64 = 0.05;
 const ECCENTRIC: f64 = 0.02;
 

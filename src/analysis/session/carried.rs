@@ -4,7 +4,7 @@ use super::Session;
 use crate::analysis::system::{System, past, samples};
 use crate::expr::measures::Measure;
 use crate::model::geometry::orientation;
-use crate::model::{ElementId, ElementKind, Model, Orientation};
+use crate::model::{ElementId, ElementKind, Model, Orientation, Part};
 use crate::physics::kinematic::kinematic;
 use crate::scene::Scene;
 use crate::scene::equations::Equations;
@@ -114,35 +114,52 @@ pub(super) fn has_new_unknowns(scene: &Scene, carried: &Carried) -> bool {
 
 /// Returns the model with its parts where they are, and moving as they do.
 pub(super) fn moved(model: &Model, carried: &Carried) -> Model {
-    let mut model = model.clone();
+    let mut model = placed(model, &carried.parts);
     for joint in model.joints.values_mut() {
         (joint.ic_translation, joint.ic_rotation) = ([None; 2], [None; 2]);
     }
     model.beginnings.clear();
-    let ground = MarkerState::ground();
     for (id, state) in &carried.parts {
-        let angle = |m| kinematic(m, state, &ground, &ground, &ground).unwrap_or(0.0);
-        let parts = if id.kind == ElementKind::PointMass {
-            &mut model.point_masses
-        } else {
-            &mut model.parts
-        };
-        let Some(part) = parts.get_mut(&id.number) else {
+        let Some(part) = part_of(&mut model, *id) else {
             continue;
         };
-        part.qg = state.p_GM.0;
-        part.orientation =
-            Orientation::Euler([Measure::Psi, Measure::Theta, Measure::Phi].map(angle));
-        let cm = part.cm.and_then(|cm| model.markers.get(&cm));
-        let cm_place = cm.map_or(Vec3::zero(), |cm| Vec3(cm.qp));
-        let cm_axes = cm.and_then(|cm| orientation(&cm.orientation, cm.qp).ok());
         // the dataset tells the velocity of CM along ground axes, the angular velocity along its
         // own
+        let (cm, w_part) = (part.cm, state.R_GM.apply_transposed(state.w_GM));
+        let cm = cm.and_then(|cm| model.markers.get(&cm));
+        let cm_place = cm.map_or(Vec3::zero(), |cm| Vec3(cm.qp));
+        let cm_axes = cm.and_then(|cm| orientation(&cm.orientation, cm.qp).ok());
         let v_cm = state.v_GM + state.w_GM.cross(state.R_GM.apply(cm_place));
-        let w_part = state.R_GM.apply_transposed(state.w_GM);
         let w_cm = cm_axes.map_or(w_part, |axes| axes.apply_transposed(w_part));
-        (part.vm, part.wm) = (None, None);
-        (part.velocity, part.angular_velocity) = (v_cm.0.map(Some), w_cm.0.map(Some));
+        if let Some(part) = part_of(&mut model, *id) {
+            (part.vm, part.wm) = (None, None);
+            (part.velocity, part.angular_velocity) = (v_cm.0.map(Some), w_cm.0.map(Some));
+        }
     }
     model
+}
+
+/// Returns the model with its parts at the given places.
+pub(super) fn placed(model: &Model, parts: &[(ElementId, MarkerState<f64>)]) -> Model {
+    let mut model = model.clone();
+    let ground = MarkerState::ground();
+    for (id, state) in parts {
+        let angle = |m| kinematic(m, state, &ground, &ground, &ground).unwrap_or(0.0);
+        if let Some(part) = part_of(&mut model, *id) {
+            part.qg = state.p_GM.0;
+            part.orientation =
+                Orientation::Euler([Measure::Psi, Measure::Theta, Measure::Phi].map(angle));
+        }
+    }
+    model
+}
+
+/// Returns the part or point mass of a number.
+fn part_of(model: &mut Model, id: ElementId) -> Option<&mut Part> {
+    let parts = if id.kind == ElementKind::PointMass {
+        &mut model.point_masses
+    } else {
+        &mut model.parts
+    };
+    parts.get_mut(&id.number)
 }

@@ -7,6 +7,7 @@
 mod arguments;
 mod at_rest;
 pub mod beginning;
+mod begun_rates;
 mod carried;
 pub mod columns;
 mod companion;

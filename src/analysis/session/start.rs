@@ -106,6 +106,7 @@ impl Session {
         })?;
         self.may_go_on(SetUp::Assembling, watch)?;
         (start.configuration).begin_states(&start.scene, &mut start.x);
+        self.begin_rates(&mut start)?;
         start.begin_turns(self.carried.as_ref());
         let (v, unmet) = match before.filter(|_| found.is_none()) {
             Some(placed) => placed.velocities(),
@@ -471,7 +472,7 @@ impl Session {
         }
     }
 
-    fn initial_motion(&self, scene: &Scene, m: usize, x: &mut [f64]) {
+    pub(super) fn initial_motion(&self, scene: &Scene, m: usize, x: &mut [f64]) {
         let Some(state) = scene.motions[m].state else {
             return;
         };

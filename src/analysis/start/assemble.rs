@@ -214,6 +214,18 @@ fn relative(scene: &Scene, r: usize, value: f64) -> f64 {
     (value / scene.row_scale(r)).abs()
 }
 
+/// Clears the rows that hold and move nothing, as a GCON between markers of one body: the direction
+/// of such a row is rounding, and no step along it closes what rounding leaves.
+pub(super) fn clear_idle(scene: &Scene, g: &DVector<f64>, gradient: &mut [SparseRow]) {
+    for (r, row) in gradient.iter_mut().enumerate() {
+        let size = row.iter().map(|e| e.1 * e.1).sum::<f64>().sqrt();
+        let moves = size > EMPTY * scene.row_scale(r).min(1.0);
+        if !moves && relative(scene, r, g[r]) <= CLOSED {
+            row.clear();
+        }
+    }
+}
+
 /// Returns the rows of a matrix, columns scaled by √w.
 pub(in crate::analysis) fn scaled_rows(a: &[SparseRow], w: &[f64]) -> Vec<Vec<f64>> {
     let row = |row: &SparseRow| {
@@ -320,6 +332,7 @@ pub(super) fn close_while<E>(
             g[r] = 0.0;
             gradient[r].clear();
         }
+        clear_idle(scene, &g, &mut gradient);
         (g, gradient, drift)
     };
     let (mut g, mut gradient, _) = rows_at(configuration, q);

@@ -21,7 +21,7 @@ use crate::analysis::start::assemble::{least_change, merged, numbers, rows_at};
 use crate::analysis::start::placement::log;
 use crate::model::ElementId;
 use crate::physics::action::Action;
-use crate::physics::row::{Drive, Law, body_angles};
+use crate::physics::row::{Drive, Law, about_the_middle, body_angles};
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::Equations;
@@ -320,8 +320,8 @@ fn single(
     }
 }
 
-/// Lets a driven β₂ be read on the side where its markers stand: that of the two triples of body
-/// angles which turns least about the other axes where they stand as `drawn`; else that which the
+/// Lets a driven β₂ be read on the side where its markers stand: where they stand as `drawn`, that
+/// of the two triples of body angles which hardly turns about the other axes; else that which the
 /// motion drives, as far as its row holds.
 pub fn refer(
     scene: &Scene,
@@ -366,7 +366,9 @@ pub fn refer(
         let driven = drive.value.cos();
         found.push((
             m,
-            if drawn || law.value(&i, &j, Some(drive)).abs() > ON_BRANCH {
+            if let (true, Some(angles)) = (drawn, about_the_middle(&i, &j)) {
+                angles[0]
+            } else if !drawn && law.value(&i, &j, Some(drive)).abs() > ON_BRANCH {
                 body_angles(&i, &j)[0]
             } else if (if driven.abs() > ON_BRANCH {
                 driven

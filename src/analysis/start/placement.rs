@@ -85,6 +85,7 @@ pub fn settle(
             g[r] = 0.0;
             gradient[r].clear();
         }
+        assemble::clear_idle(&scene, &g, &mut gradient);
         let off = (0..g.len()).fold(0.0, |m: f64, r| m.max((g[r] / scene.row_scale(r)).abs()));
         if k == 0 && off < IN_PLACE && distance.residual.amax() < IN_PLACE {
             return true;

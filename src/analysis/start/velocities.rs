@@ -623,7 +623,7 @@ fn line_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<Line
 }
 
 /// Returns the frame of a marker with its rates: Ṙ = ω × R, column by column.
-fn moving(m: &MarkerState<f64>) -> Frame<Jet> {
+pub(in crate::analysis) fn moving(m: &MarkerState<f64>) -> Frame<Jet> {
     let jets = |value: Vec3<f64>, rate: Vec3<f64>| {
         Vec3([0, 1, 2].map(|k| Jet::new(value.0[k], rate.0[k], 0.0)))
     };
