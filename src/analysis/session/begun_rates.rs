@@ -4,6 +4,7 @@
 use super::Session;
 use super::carried::{Carried, moved, placed};
 use super::state_at_start::Start;
+use crate::analysis::look::Look;
 use crate::analysis::start::velocities::{self, moving};
 use crate::analysis::start::{assemble, initial_conditions, placement};
 use crate::analysis::system::closures;
@@ -32,8 +33,12 @@ impl Session {
     /// mechanism would have without them.
     ///
     /// # Errors
-    /// Velocities that contradict each other without these motions.
-    pub(super) fn begin_rates(&self, start: &mut Start) -> Result<(), Vec<Diagnostic>> {
+    /// Velocities that contradict each other without these motions, and what `look` answers.
+    pub(super) fn begin_rates(
+        &self,
+        start: &mut Start,
+        look: Look<'_>,
+    ) -> Result<(), Vec<Diagnostic>> {
         let waiting = self.waiting(&start.scene, self.carried.as_ref());
         if waiting.is_empty() {
             return Ok(());
@@ -46,7 +51,7 @@ impl Session {
             let id = start.scene.motions[w.motion].id;
             free.inactive.insert(ElementKind::Motion.id(id));
         }
-        let Some((there, v)) = self.moving_start(&free, start)? else {
+        let Some((there, v)) = self.moving_start(&free, start, look)? else {
             return Ok(());
         };
         let (here, q, x) = (there.here(), &there.q, &there.x);
@@ -144,6 +149,7 @@ impl Session {
         &self,
         model: &Model,
         of: &Start,
+        look: Look<'_>,
     ) -> Result<Option<(Start, Vec<f64>)>, Vec<Diagnostic>> {
         let hooks = self.hooks.iter().map(closures::Hook::as_name);
         let options = build::Options {
@@ -164,8 +170,10 @@ impl Session {
         }
         start.configuration.external = self.external(start.here(), start.t, &start.q, &start.x)?;
         let conditions = initial_conditions::collect(&start.scene, model);
-        if start.assemble(model, true, &conditions).is_err() {
-            return Ok(None);
+        let mut stopped = None;
+        let mut seen = || look().inspect_err(|said| stopped = Some(said.clone()));
+        if start.assemble(model, true, &conditions, &mut seen).is_err() {
+            return stopped.map_or(Ok(None), Err);
         }
         (start.configuration).begin_states(&start.scene, &mut start.x);
         let v = velocities::velocities(start.here(), model, start.t, &start.q, &start.x);

@@ -106,7 +106,9 @@ impl Session {
         })?;
         self.may_go_on(SetUp::Assembling, watch)?;
         (start.configuration).begin_states(&start.scene, &mut start.x);
-        self.begin_rates(&mut start)?;
+        self.looking(SetUp::Assembling, watch, |session, look| {
+            session.begin_rates(&mut start, look)
+        })?;
         start.begin_turns(self.carried.as_ref());
         let (v, unmet) = match before.filter(|_| found.is_none()) {
             Some(placed) => placed.velocities(),
