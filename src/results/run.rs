@@ -327,7 +327,7 @@ impl Run {
     }
     /// Becomes a later state of the same run; what has been copied before is copied again only
     /// where it is no longer the beginning.
-    pub(crate) fn catch_up(&mut self, later: &Run) {
+    pub fn catch_up(&mut self, later: &Run) {
         if !self.begins(later) {
             self.clone_from(later);
             return;
