@@ -243,7 +243,7 @@ impl AlgebraicLoops {
             for (k, group) in some.iter().enumerate() {
                 group.iter().for_each(|&place| row[place].set(k, 1.0));
             }
-            tangent.along(row, rho);
+            tangent.along(some.len(), row, rho);
             for (k, group) in some.iter().enumerate() {
                 for &place in group {
                     row[place].set(k, 0.0);
@@ -472,7 +472,7 @@ impl AlgebraicLoops {
             return;
         };
         let rho = &mut self.lanes[1];
-        tangent.along(lanes, rho);
+        tangent.along(n, lanes, rho);
         for direction in 0..n {
             for (s, rho) in self.step.iter_mut().zip(rho.iter()) {
                 *s = -rho.get(direction);

@@ -44,6 +44,8 @@ pub struct Branches {
     numbers_of_steps: Vec<f64>,
     /// whether they are
     is_aside: bool,
+    /// values of the switches at a look aside   (n_switches)
+    values_aside: Vec<f64>,
 }
 
 impl Branches {
@@ -75,6 +77,7 @@ impl Branches {
             slides: Slides::default(),
             numbers_of_steps: Vec::new(),
             is_aside: false,
+            values_aside: vec![0.0; n],
         })
     }
 
@@ -232,10 +235,12 @@ impl Branches {
 
     /// Returns whether the numbers say the same branches as are held.
     pub(super) fn are_held_at(&mut self, numbers: &[f64]) -> bool {
-        let mut values = vec![0.0; self.len()];
+        let mut values = std::mem::take(&mut self.values_aside);
         self.values(numbers, &mut values);
         let mut pairs = values.iter().zip(&self.sides);
-        pairs.all(|(value, side)| value * side >= 0.0)
+        let are_held = pairs.all(|(value, side)| value * side >= 0.0);
+        self.values_aside = values;
+        are_held
     }
 
     /// Returns how long a step from a state may be so that no angle which decides a branch turns by

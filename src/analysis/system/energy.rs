@@ -138,14 +138,15 @@ impl System {
 
     /// Returns whether the functions are at a state on the branches that are held.
     fn is_on_held_branch(&mut self, t: f64, state: &[f64]) -> bool {
-        if !self.recorded.branches.is_holding() {
-            return true;
-        }
-        let mut numbers = self.numbers.clone();
-        self.scene.layout.set_state(&mut numbers, t, state);
         let branches = &mut self.recorded.branches;
+        let Some(energy) = self.energy.as_mut().filter(|_| branches.is_holding()) else {
+            return true;
+        };
+        let numbers = &mut energy.kept;
+        numbers.copy_from_slice(&self.numbers);
+        self.scene.layout.set_state(numbers, t, state);
         branches.exchange_traces();
-        let holds = branches.are_held_at(&numbers);
+        let holds = branches.are_held_at(numbers);
         branches.exchange_traces();
         holds
     }

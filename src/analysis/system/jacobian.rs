@@ -367,7 +367,7 @@ impl System {
             if let Some(loops) = self.present_loops() {
                 loops.follow_together(row, some.len());
             }
-            tangent.along(row, rates);
+            tangent.along(some.len(), row, rates);
             for k in 0..some.len() {
                 take(chunk * LANES + k, &|i| rates[i].get(k));
             }

@@ -94,7 +94,7 @@ impl Builder {
 
 #[cfg(test)]
 mod tests {
-    use super::super::random::{Random, extend};
+    use super::super::random::{KINDS, Random, extend};
     use super::*;
     use crate::expr::program::Work;
 
@@ -105,7 +105,7 @@ mod tests {
         let layout = [0, 1, 2, 3, 4, 5].map(Input::Slot);
         let mut values: Vec<Value> = layout.iter().map(|&i| b.input(i)).collect();
         values.push(b.constant(0.3));
-        extend(&mut b, &mut random, &mut values, 40);
+        extend(&mut b, &mut random, &mut values, 40, KINDS);
         let outputs = values.split_off(values.len() - 5);
         b.finish_with_inputs(&outputs, &layout)
     }

@@ -18,14 +18,27 @@ impl Random {
     }
 }
 
-/// Records so many operations on values that there are.
+/// Kinds of operations that [`extend`] records.
 #[cfg(feature = "solver")]
-pub(super) fn extend(b: &mut Builder, random: &mut Random, values: &mut Vec<Value>, n: usize) {
+pub(super) const KINDS: usize = 12;
+/// Those before roots and partial derivatives, which may be no numbers.
+#[cfg(feature = "solver")]
+pub(super) const PLAIN_KINDS: usize = 10;
+
+/// Records so many operations of the first `kinds` on values that there are.
+#[cfg(feature = "solver")]
+pub(super) fn extend(
+    b: &mut Builder,
+    random: &mut Random,
+    values: &mut Vec<Value>,
+    n: usize,
+    kinds: usize,
+) {
     for _ in 0..n {
         let [x, y, z, w] = [(); 4].map(|()| values[random.below(values.len())]);
-        let value = match random.below(11) {
+        let value = match random.below(kinds) {
             0 => b.unary(UnaryOp::Sin, x),
-            1 => b.unary(UnaryOp::Sqrt, x),
+            1 => b.unary(UnaryOp::Atan, x),
             2 => b.binary(BinaryOp::Sub, x, y),
             3 => b.binary(BinaryOp::Div, x, y),
             4 => {
@@ -33,14 +46,15 @@ pub(super) fn extend(b: &mut Builder, random: &mut Random, values: &mut Vec<Valu
                 b.select(condition, z, w)
             }
             5 => b.call(Function::Step, &[x, y, z, w, values[0]]),
-            6 => {
+            6 => b.binary(BinaryOp::Atan2, x, y),
+            7 => b.binary(BinaryOp::Mul, x, y),
+            8 => b.unary(UnaryOp::Neg, x),
+            9 => b.binary(BinaryOp::Add, x, y),
+            10 => b.unary(UnaryOp::Sqrt, x),
+            _ => {
                 let call = [x, y, z, w, values[0]];
                 b.partial_of(Function::Step, &call, 0)
             }
-            7 => b.binary(BinaryOp::Mul, x, y),
-            8 => b.binary(BinaryOp::Atan2, x, y),
-            9 => b.unary(UnaryOp::Neg, x),
-            _ => b.binary(BinaryOp::Add, x, y),
         };
         values.push(value);
     }

@@ -55,6 +55,8 @@ pub(crate) struct Tangent {
     work: Work,
     /// constants, then what `fixed` has computed
     factors: Vec<f64>,
+    /// whether all of these are
+    are_finite: bool,
     registers: Vec<Lane>,
 }
 
@@ -151,6 +153,7 @@ impl Tangent {
             linear: Arc::new(linear),
             work: Work::default(),
             factors,
+            are_finite: false,
         })
     }
 
@@ -158,14 +161,22 @@ impl Tangent {
     pub(crate) fn see(&mut self, numbers: &[f64]) {
         let factors = &mut self.factors[self.linear.constants.len()..];
         self.linear.fixed.run(numbers, &mut self.work, factors);
+        self.are_finite = self.factors.iter().all(|p| p.is_finite());
     }
 
-    /// Follows directions from the derivatives of the inputs, by position, to those of the outputs.
-    pub(crate) fn along(&mut self, seeds: &[Lane], out: &mut [Lane]) {
+    /// Follows the first `n` directions from the derivatives of the inputs, by position, to those
+    /// of the outputs; what these say of others means nothing.
+    pub(crate) fn along(&mut self, n: usize, seeds: &[Lane], out: &mut [Lane]) {
         for &(input, register) in &self.linear.seeds {
             self.registers[register as usize] = seeds[input as usize];
         }
-        perform(&self.linear.steps, &self.factors, &mut self.registers);
+        let code = Code {
+            steps: &self.linear.steps,
+            factors: &self.factors,
+            are_finite: self.are_finite,
+            n_vectors: n.div_ceil(WIDTH),
+        };
+        perform(code, &mut self.registers);
         for (out, &register) in out.iter_mut().zip(&self.linear.outputs) {
             *out = self.registers[register as usize];
         }
@@ -436,22 +447,21 @@ fn allocated(
     (kept, outputs, n_registers)
 }
 
-/// `to = f(a, …)` for all directions.
-macro_rules! each {
-    ($r:ident, $to:ident = |$($x:ident = $register:ident),+| $value:expr) => {{
-        let to = $to as usize;
-        for k in 0..VECTORS {
-            $(let $x = $r[$register as usize].0[k];)+
-            $r[to].0[k] = $value;
-        }
-    }};
+/// Steps, and what is known of them.
+#[derive(Clone, Copy)]
+struct Code<'a> {
+    steps: &'a [Step],
+    factors: &'a [f64],
+    are_finite: bool,
+    /// vectors of a lane in which anybody asks for directions
+    n_vectors: usize,
 }
 
 /// Returns p x; nothing changes along a direction in which x does not, however steep p is.
 #[inline(always)]
-fn times(x: Lanes<WIDTH>, p: Lanes<WIDTH>) -> Lanes<WIDTH> {
+fn times<const FINITE: bool>(x: Lanes<WIDTH>, p: Lanes<WIDTH>) -> Lanes<WIDTH> {
     let mut product = x * p;
-    if !p.0[0].is_finite() {
+    if !FINITE && !p.0[0].is_finite() {
         for (y, x) in product.0.iter_mut().zip(x.0) {
             *y = if x == 0.0 { 0.0 } else { *y };
         }
@@ -462,44 +472,70 @@ fn times(x: Lanes<WIDTH>, p: Lanes<WIDTH>) -> Lanes<WIDTH> {
 /// Performs all steps, with the vector instructions of this machine.
 #[cfg(all(feature = "native", target_arch = "x86_64"))]
 #[allow(unsafe_code)]
-fn perform(steps: &[Step], factors: &[f64], r: &mut [Lane]) {
+fn perform(code: Code<'_>, r: &mut [Lane]) {
     match Instructions::of_this_machine() {
-        Instructions::Portable => perform_any(steps, factors, r),
+        Instructions::Portable => perform_any(code, r),
         // SAFETY: the machine has these instructions, see `of_this_machine`
-        Instructions::Avx2 => unsafe { perform_avx2(steps, factors, r) },
+        Instructions::Avx2 => unsafe { perform_avx2(code, r) },
         // SAFETY: as before
-        Instructions::Avx512 => unsafe { perform_avx512(steps, factors, r) },
+        Instructions::Avx512 => unsafe { perform_avx512(code, r) },
     }
 }
 
 /// Performs all steps.
 #[cfg(not(all(feature = "native", target_arch = "x86_64")))]
-fn perform(steps: &[Step], factors: &[f64], r: &mut [Lane]) {
+fn perform(code: Code<'_>, r: &mut [Lane]) {
     match Instructions::of_this_machine() {
-        Instructions::Portable => perform_any(steps, factors, r),
+        Instructions::Portable => perform_any(code, r),
     }
 }
 
 #[cfg(all(feature = "native", target_arch = "x86_64"))]
 #[target_feature(enable = "avx2")]
-fn perform_avx2(steps: &[Step], factors: &[f64], r: &mut [Lane]) {
-    perform_any(steps, factors, r);
+fn perform_avx2(code: Code<'_>, r: &mut [Lane]) {
+    perform_any(code, r);
 }
 
 #[cfg(all(feature = "native", target_arch = "x86_64"))]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq")]
-fn perform_avx512(steps: &[Step], factors: &[f64], r: &mut [Lane]) {
-    perform_any(steps, factors, r);
+fn perform_avx512(code: Code<'_>, r: &mut [Lane]) {
+    perform_any(code, r);
 }
 
 /// Performs all steps, compiled for the vector instructions of its surroundings.
 #[inline(always)]
-fn perform_any(steps: &[Step], factors: &[f64], r: &mut [Lane]) {
-    for step in steps {
+fn perform_any(code: Code<'_>, r: &mut [Lane]) {
+    match (code.n_vectors, code.are_finite) {
+        (1, true) => perform_on::<1, true>(code, r),
+        (2, true) => perform_on::<2, true>(code, r),
+        (3, true) => perform_on::<3, true>(code, r),
+        (_, true) => perform_on::<VECTORS, true>(code, r),
+        (_, false) => perform_on::<VECTORS, false>(code, r),
+    }
+}
+
+/// `to = f(a, …)` in the first `N` vectors; all of these are known before any of them is written.
+macro_rules! each {
+    ($r:ident, $to:ident = |$($x:ident = $register:ident),+| $value:expr) => {{
+        $(let $x = &$r[$register as usize].0;)+
+        let mut all = [Lanes([0.0; WIDTH]); N];
+        for k in 0..N {
+            $(let $x = $x[k];)+
+            all[k] = $value;
+        }
+        $r[$to as usize].0[..N].copy_from_slice(&all);
+    }};
+}
+
+/// Performs all steps on the first `N` vectors of each lane.
+#[inline(always)]
+fn perform_on<const N: usize, const FINITE: bool>(code: Code<'_>, r: &mut [Lane]) {
+    let factors = code.factors;
+    for step in code.steps {
         match *step {
             Step::Product { to, p, a } => {
                 let p = Lanes::constant(p.of(factors));
-                each!(r, to = |x = a| times(x, p));
+                each!(r, to = |x = a| times::<FINITE>(x, p));
             }
             Step::Quotient { to, a, p } => {
                 let p = Lanes::constant(p.of(factors));
@@ -508,11 +544,11 @@ fn perform_any(steps: &[Step], factors: &[f64], r: &mut [Lane]) {
             Step::Sum { to, p, a, q, b } => {
                 let (p, q) = (p.of(factors), q.of(factors));
                 let (p, q) = (Lanes::constant(p), Lanes::constant(q));
-                each!(r, to = |x = a, y = b| times(x, p) + times(y, q));
+                each!(r, to = |x = a, y = b| times::<FINITE>(x, p) + times::<FINITE>(y, q));
             }
             Step::Select { to, p, a, b } => {
                 let from = if p.of(factors) > 0.0 { a } else { b };
-                r[to as usize] = r[from as usize];
+                each!(r, to = |x = from| x);
             }
         }
     }
@@ -520,7 +556,7 @@ fn perform_any(steps: &[Step], factors: &[f64], r: &mut [Lane]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::random::{Random, extend};
+    use super::super::random::{PLAIN_KINDS, Random, extend};
     use super::*;
 
     /// Records operations that `seed` says on six inputs.
@@ -530,7 +566,7 @@ mod tests {
         let layout = [0, 1, 2, 3, 4, 5].map(Input::Slot);
         let mut values: Vec<Value> = layout.iter().map(|&i| b.input(i)).collect();
         values.push(b.constant(0.3));
-        extend(&mut b, &mut random, &mut values, 60);
+        extend(&mut b, &mut random, &mut values, 60, PLAIN_KINDS);
         let mut outputs = values.split_off(values.len() - 5);
         outputs.push(values[1]);
         b.finish_with_inputs(&outputs, &layout)
@@ -556,7 +592,7 @@ mod tests {
                 }
                 tangent.see(&numbers);
                 let mut out = vec![Lane::ZERO; 6];
-                tangent.along(&seeds, &mut out);
+                tangent.along(LANES, &seeds, &mut out);
                 for d in 0..LANES {
                     let dual = |k: usize| Dual {
                         re: numbers[k],
@@ -571,6 +607,23 @@ mod tests {
                             compared += 1;
                             assert!(own == known, "{seed}, {d}: {own} {known}\n{program}");
                         }
+                    }
+                }
+                // fewer directions
+                for n in [
+                    1,
+                    WIDTH,
+                    WIDTH + 1,
+                    LANES - WIDTH - 1,
+                    LANES - WIDTH,
+                    LANES - 1,
+                ] {
+                    let mut some = vec![Lane::ZERO; 6];
+                    tangent.along(n, &seeds, &mut some);
+                    for (some, all) in some.iter().zip(&out) {
+                        let bits = |lane: &Lane| (0..n).map(|d| lane.get(d).to_bits()).collect();
+                        let [some, all]: [Vec<u64>; 2] = [some, all].map(bits);
+                        assert_eq!(some, all, "{seed}, {n} directions\n{program}");
                     }
                 }
             }
@@ -590,7 +643,7 @@ mod tests {
         let (mut seeds, mut out) = ([Lane::ZERO; 2], [Lane::ZERO]);
         seeds[0].set(0, 1.0);
         seeds[1].set(1, 1.0);
-        tangent.along(&seeds, &mut out);
+        tangent.along(2, &seeds, &mut out);
         assert_eq!([out[0].get(0), out[0].get(1)], [f64::INFINITY, 1.0]);
     }
 }

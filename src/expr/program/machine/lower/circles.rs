@@ -28,10 +28,11 @@ enum Instead {
 
 /// Returns steps with the same results in which angles are gathered.
 pub(super) fn gathered(core: &Core, mut steps: Steps) -> Steps {
-    let is_angle = |step: &&Step| matches!(step, Step::SineCosine { .. });
-    if steps.steps.iter().filter(is_angle).count() < WORTH_GATHERING {
+    let is_angle = |step: &Step| matches!(step, Step::SineCosine { .. });
+    if steps.steps.iter().filter(|step| is_angle(step)).count() < WORTH_GATHERING {
         return steps;
     }
+    let end = (steps.steps.iter().rposition(is_angle)).map_or(0, |last| last + 1);
     let mut instead = vec![Instead::Itself; steps.steps.len()];
     let mut seen = Seen {
         is_target: steps.jumped_to(),
@@ -39,8 +40,9 @@ pub(super) fn gathered(core: &Core, mut steps: Steps) -> Steps {
         written: vec![usize::MAX; steps.n_slots()],
         all_read: false,
         first: 0,
+        end,
     };
-    for first in 0..steps.steps.len() {
+    for first in 0..end {
         if let (Step::SineCosine { .. }, Instead::Itself) = (&steps.steps[first], instead[first]) {
             let found = seen.known_at(core, &steps, &instead, first);
             if found.len() >= WORTH_GATHERING {
@@ -70,6 +72,8 @@ struct Seen {
     /// whether a step has read what it does not say itself
     all_read: bool,
     first: usize,
+    /// behind the last step for an angle
+    end: usize,
 }
 
 impl Seen {
@@ -83,7 +87,7 @@ impl Seen {
     ) -> Vec<Angle> {
         let mut found = Vec::new();
         (self.first, self.all_read) = (first, false);
-        let ahead = steps.steps.iter().enumerate().skip(first);
+        let ahead = steps.steps[..self.end].iter().enumerate().skip(first);
         for (k, step) in ahead.take(MOST_STEPS_AHEAD) {
             let ends = k > first && self.is_target[k] || step.targets().next().is_some();
             if ends || found.len() == N_ANGLES {
