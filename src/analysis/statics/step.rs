@@ -183,7 +183,8 @@ impl Settler<'_> {
     }
 
     /// Tries a step: the point at its end, how far that is from what was foretold (relative to the
-    /// limit, beyond the `floor` that rounding makes of loads and of states), and whether its length had to be limited.
+    /// limit, beyond the `floor` that rounding makes of loads and of states), and whether its
+    /// length had to be limited.
     pub(super) fn attempt(
         &mut self,
         p: &Point,
