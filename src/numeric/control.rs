@@ -523,7 +523,7 @@ fn shortest(t: f64, options: &Options) -> f64 {
 
 /// Returns the length of a first step whose guess is `guess`, in s: no longer than permitted, and
 /// no shorter than the shortest step. A guess is no proof that nothing longer succeeds.
-pub fn first_length(t: f64, guess: f64, options: &Options) -> f64 {
+pub(super) fn first_length(t: f64, guess: f64, options: &Options) -> f64 {
     guess.max(shortest(t, options)).min(options.h_max)
 }
 

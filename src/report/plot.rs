@@ -73,7 +73,7 @@ impl Plot {
             let column = &run.columns[c];
             let points = rows
                 .iter()
-                .map(|&row| (x_column.values[row], column.values[row]))
+                .map(|&row| (x_column.at(row), column.at(row)))
                 .collect();
             let bars = run.bars(c).map(|bars| &run.columns[bars].values);
             let bars = bars.map(|bars| rows.iter().map(|&row| bars[row]).collect());

@@ -73,7 +73,7 @@ impl TableText for Table {
                     text.push(separator);
                 }
                 let from = text.len();
-                push_digits(column.values[place], text);
+                push_digits(column.at(place), text);
                 if self.style.decimal_comma {
                     let point = text[from..].iter_mut().find(|c| **c == b'.');
                     point.into_iter().for_each(|c| *c = b',');

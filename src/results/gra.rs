@@ -259,7 +259,7 @@ impl Frames {
     fn frame(&self, run: &Run, time: f64, place: usize, text: &mut Vec<u8>) {
         put_line([time], text);
         for part in &self.parts {
-            put_line(part.map(|column| run.columns[column].values[place]), text);
+            put_line(part.map(|column| run.value(column, place)), text);
         }
     }
 }
@@ -299,7 +299,7 @@ impl TableText for Frames {
             let time = match kind {
                 Some(Kind::Input) => INPUT,
                 Some(Kind::Static) => STATIC,
-                _ => run.columns[0].values[place],
+                _ => run.value(0, place),
             };
             self.frame(run, time, place, text);
         }

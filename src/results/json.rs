@@ -197,7 +197,7 @@ pub fn table(run: &Run) -> Value {
         .into_iter()
         .filter_map(|i| run.columns.get(i))
         .map(|c| {
-            let values: Vec<f64> = rows.iter().map(|&row| c.values[row]).collect();
+            let values: Vec<f64> = rows.iter().map(|&row| c.at(row)).collect();
             match c.bar_of.and_then(|of| run.columns.get(of)) {
                 Some(of) => {
                     json!({ "name": c.name, "unit": c.unit, "bar_of": of.name, "values": values })

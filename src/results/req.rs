@@ -171,11 +171,11 @@ impl TableText for Components {
     fn rows(&mut self, run: &Run, rows: Range<usize>, text: &mut Vec<u8>) {
         for row in rows {
             let place = row - run.released;
-            put_line([run.columns[0].values[place]], text);
+            put_line([run.value(0, place)], text);
             for request in &run.requests {
                 let value = |component: usize| {
                     let column = request.columns[component];
-                    column.map_or(0.0, |column| run.columns[column].values[place])
+                    column.map_or(0.0, |column| run.value(column, place))
                 };
                 put_line(WRITTEN.map(value), text);
             }

@@ -49,6 +49,11 @@ pub struct Column {
 }
 
 impl Column {
+    /// Returns the value at a place among the rows that are held; NaN where there is none.
+    pub(crate) fn at(&self, place: usize) -> f64 {
+        self.values.get(place).copied().unwrap_or(f64::NAN)
+    }
+
     /// Returns a column of the same name and unit without values.
     pub fn empty(&self) -> Self {
         Self {
@@ -362,6 +367,12 @@ impl Run {
     /// Returns the number of rows, those that are no longer held included.
     pub fn rows(&self) -> usize {
         self.released + self.columns.first().map_or(0, |c| c.values.len())
+    }
+    /// Returns the value of a column at a place among the rows that are held; NaN where there is
+    /// none, as a caller may have taken away columns or rows.
+    pub(crate) fn value(&self, column: usize, place: usize) -> f64 {
+        let column = self.columns.get(column);
+        column.map_or(f64::NAN, |column| column.at(place))
     }
     /// Returns the rows that are held.
     pub fn held(&self) -> Range<usize> {

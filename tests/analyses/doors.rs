@@ -380,3 +380,40 @@ fn a_session_and_what_it_is_made_of_go_to_other_threads() {
     is_shared::<Program>();
     is_shared::<Error>();
 }
+
+#[test]
+fn results_of_which_a_caller_has_taken_something_are_told_and_written_without_a_panic() {
+    let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("taken");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    type Take = fn(&mut cognate::results::Run);
+    let takes: [(&str, Take); 5] = [
+        ("all columns", |run| run.columns.clear()),
+        ("a column", |run| drop(run.columns.pop())),
+        ("values", |run| run.columns[1].values.clear()),
+        ("times", |run| run.columns[0].values.clear()),
+        ("the last value", |run| {
+            let all = run.columns[1].values.len();
+            run.columns[1].values.truncate(all - 1);
+        }),
+    ];
+    for (what, take) in takes {
+        let options = Options {
+            columns: vec!["AZ(21,1)".into()],
+            ..few_steps()
+        };
+        let mut session = Session::new(pendulum(), "taken", options);
+        let done = session.simulate(Analysis::Dynamic, 0.1, 4, &mut Unwatched);
+        assert_eq!(done, Ok(Status::Completed));
+        take(&mut session.run);
+        for row in cognate::results::format::FORMATS {
+            let path = folder.join(format!("taken.{}", row.name));
+            // written with gaps, or refused
+            let _ = cognate::results::write(&session.run, &path, Default::default());
+        }
+        let goes_on = session.simulate(Analysis::Dynamic, 0.2, 4, &mut Unwatched);
+        // with one column less there is a table still
+        if what != "a column" {
+            assert_eq!(about(goes_on).0, "unfit_value", "{what}");
+        }
+    }
+}

@@ -323,3 +323,41 @@ fn errors_of_swings_that_are_damped_do_not_add_up() {
         }
     }
 }
+
+#[test]
+fn swings_that_are_small_beside_their_model_say_what_that_makes_of_their_errors() {
+    let omega = 5.0;
+    let mut found = [0, 0];
+    for (at, share) in [(0.6, 1e-3), (0.6, 2e-7), (30.0, 1e-4), (100.0, 1e-7)] {
+        let width = at * share;
+        let text = format!(
+            "PART/2, MASS=2, CM=2, IP=1,1,1, QG={},0,0\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=3, J=4\n\
+             MARKER/3, PART=2, REULER=90D,90D,0\nMARKER/4, PART=1, REULER=90D,90D,0\nMARKER/5, PART=1, QP={at},0,0\n\
+             SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=3, J=4, FUNCTION=-50*DX(2,5)\n",
+            at + width
+        );
+        for error in [1e-2, 1e-4, 1e-6] {
+            for method in ["AUTO", "RADAU5", "BDF"] {
+                let mut s = session_by(&text, &["VX(2,1)"], method, error);
+                go(&mut s, Analysis::Dynamic, 3.0, 40);
+                let exact = |t: f64| -width * omega * (omega * t).sin();
+                let off = off(&s, "VX(2,1)", exact) / (width * omega * error);
+                let said = s.run.record.warned();
+                let told = said
+                    .iter()
+                    .any(|w| w.starts_with("nothing moves by more than"));
+                println!("{at} {share:e} {error:e} {method}: {off:.1} requests, {told}");
+                assert!(
+                    told || off < 100.0,
+                    "{at} {share:e} {error:e} {method}: {off}"
+                );
+                assert!(
+                    !told || share < 1e-4,
+                    "{at} {share:e} {error:e} {method}: {said:?}"
+                );
+                found[usize::from(told)] += 1;
+            }
+        }
+    }
+    assert!(found.iter().all(|&n| n >= 9), "{found:?}");
+}

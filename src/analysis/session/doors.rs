@@ -52,7 +52,7 @@ impl Session {
         self.receive(Box::new(move |run: &mut Run| {
             for k in 0..run.held().len() {
                 values.clear();
-                values.extend(run.columns.iter().map(|column| column.values[k]));
+                values.extend(run.columns.iter().map(|column| column.at(k)));
                 row(&values);
             }
             run.release();

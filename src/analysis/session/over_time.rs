@@ -19,9 +19,10 @@ use crate::analysis::work_limit::ProcessorClock;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::model::ElementKind;
-use crate::numeric::{Ode, noise};
+use crate::numeric::{self, Ode, noise};
 use crate::results::{self, Event, Kind, Status};
 use crate::scene::layout::Layout;
+use std::ops::Range;
 
 impl Session {
     /// Runs a kinematic or dynamic simulation and adds its rows to the run.
@@ -76,6 +77,9 @@ impl Session {
         }
         if seen.swings.exceed(settings.error) {
             self.warn_of_energy(system, &seen, (&trajectory, settings.error));
+        }
+        if kind == Kind::Dynamic {
+            self.warn_of_small_motion(system, &seen, (&typical, settings.error));
         }
         self.warn_of_rounding((system, &seen), &trajectory, settings.error);
         self.warn_of_splines(seen.readings);
@@ -273,6 +277,28 @@ impl Session {
         }
     }
 
+    /// Warns where all that moves is so small beside the model that permitted errors, which count
+    /// from its size, are a large part of the motion; not where everything rests.
+    fn warn_of_small_motion(
+        &mut self,
+        system: &System,
+        seen: &Seen,
+        (typical, asked): (&[f64], f64),
+    ) {
+        let l = system.scene.layout;
+        let begin = l.y().start;
+        let of = |places: Range<usize>| &typical[places.start - begin..places.end - begin];
+        let reach = seen.swings.reach([of(l.q()), of(l.v())]);
+        let floor = numeric::Options::default().floor;
+        if reach > RESTING && reach < SMALL * floor {
+            self.warn(RunWarning::SmallMotion {
+                reach,
+                share: asked * floor / reach,
+                error: asked * reach / floor,
+            });
+        }
+    }
+
     /// Warns where stability, not the error asked for, set the steps of an explicit method.
     fn warn_of_stability(&mut self, trajectory: &Trajectory) {
         let (limited, steps) = (trajectory.stats.stability_limited, trajectory.stats.steps);
@@ -282,6 +308,11 @@ impl Session {
     }
 }
 
+/// Way of a coordinate, or velocity, over what is typical of it, up to which everything rests.
+const RESTING: f64 = 1e-9;
+/// The same, over the part of what is typical that errors count from at least, up to which a motion
+/// is small: errors are then a hundred requests and more.
+const SMALL: f64 = 1e-2;
 /// Request from which on rounding may add up to more within any number of steps.
 const FINE_REQUEST: f64 = 1e-7;
 /// Fewest steps whose roundings add up.

@@ -70,15 +70,14 @@ impl Gaps {
         self.has_value.resize(run.columns.len(), false);
         self.first.resize(run.columns.len(), None);
         let from = run.held().len().saturating_sub(n);
-        let time = &run.columns[0].values;
         let seen = self.has_value.iter_mut().zip(&mut self.first);
         for (column, (has_value, first)) in run.columns.iter().zip(seen) {
-            let new = &column.values[from..];
+            let new = column.values.get(from..).unwrap_or_default();
             // without a way out of the loop, so that it takes several numbers at once
             let has_gap = new.iter().fold(false, |any, x| any | !x.is_finite());
             if has_gap {
                 let gap = new.iter().position(|x| !x.is_finite());
-                *first = first.or(gap.map(|gap| time[from + gap]));
+                *first = first.or(gap.map(|gap| run.value(0, from + gap)));
             }
             *has_value |= new.iter().any(|x| x.is_finite());
         }

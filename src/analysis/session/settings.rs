@@ -29,6 +29,32 @@ impl Session {
         ])
     }
 
+    /// Returns whether the results so far are those that the session has made: rows follow rows of
+    /// the same columns.
+    ///
+    /// # Errors
+    /// A caller has taken away columns, or values of one.
+    pub(super) fn check_rows(&self) -> Result<(), Vec<Diagnostic>> {
+        let run = &self.run;
+        let n = run.held().len();
+        let refuse = |what: String| {
+            let d = Diagnostic::error("unfit_value", what);
+            let help = "copy the results before changing them: session.run.clone()";
+            Err(vec![d.help(help)])
+        };
+        if run.columns.is_empty() {
+            return refuse("the results of the session have lost their columns".into());
+        }
+        match run.columns.iter().find(|c| c.values.len() != n) {
+            None => Ok(()),
+            Some(c) => refuse(format!(
+                "the column {:?} of the results has {} values for {n} rows",
+                c.name,
+                c.values.len()
+            )),
+        }
+    }
+
     /// Checks that INTEGRATOR and the options have numbers that an integration can keep.
     ///
     /// # Errors

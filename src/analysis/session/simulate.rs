@@ -75,6 +75,7 @@ impl Session {
             self.check_method(),
             self.check_settings(),
             self.check_times(analysis, end, output),
+            self.check_rows(),
         ];
         let wrong: Vec<Diagnostic> = asked
             .into_iter()

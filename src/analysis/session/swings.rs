@@ -185,6 +185,17 @@ impl Swings {
         !self.ranges.is_empty() && self.ranges.iter().zip(typical).all(stands)
     }
 
+    /// Returns the largest way of a coordinate, or velocity, over what is typical of it; `typical`:
+    /// magnitudes of the coordinates and of the velocities.
+    pub fn reach(&self, typical: [&[f64]; 2]) -> f64 {
+        let ways = self.ranges.iter().map(|[low, high]| high - low);
+        let speeds = self.velocities.iter();
+        let speeds = speeds.map(|v| v.low.abs().max(v.high.abs()));
+        let of_ways = ways.zip(typical[0]);
+        let all = of_ways.chain(speeds.zip(typical[1]));
+        all.fold(0.0, |most, (x, typical)| most.max(x / typical))
+    }
+
     /// Returns whether velocity `k`, which has swung so often, swings to the end.
     fn goes_on(&self, (k, swings): (usize, f64)) -> bool {
         let [begin, end] = self.span;

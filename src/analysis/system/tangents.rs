@@ -2,7 +2,7 @@
 
 use crate::expr::program::{Program, Tangent};
 
-/// How often derivatives are taken by duals before recording them pays.
+/// Calls for derivatives by duals after which recording them pays.
 const OFTEN: usize = 6;
 /// Operations of a program whose derivatives are recorded, at most.
 const MOST_OPERATIONS: usize = 1_000_000;

@@ -129,6 +129,15 @@ pub enum RunWarning {
         /// about how far off the swings may be, over their width and the request
         requests: f64,
     },
+    /// nothing moves by more than a small part of the size of the model
+    SmallMotion {
+        /// the largest way or velocity, over the size of the model, or over a rad
+        reach: f64,
+        /// permitted error over that
+        share: f64,
+        /// the error to ask for
+        error: f64,
+    },
     /// stability, not accuracy, sets the steps of an explicit method
     StabilityLimited {
         /// number of such steps
@@ -167,6 +176,7 @@ impl RunWarning {
             RunWarning::EnergyUnsure { .. } => "energy_unsure",
             RunWarning::PhaseUnsure { .. } => "phase_unsure",
             RunWarning::ErrorsAddUp { .. } => "errors_add_up",
+            RunWarning::SmallMotion { .. } => "small_motion",
             RunWarning::CompanionEnded { .. } => "accuracy_unknown",
         }
     }
@@ -194,6 +204,7 @@ impl RunWarning {
             | RunWarning::EnergyUnsure { .. }
             | RunWarning::PhaseUnsure { .. }
             | RunWarning::ErrorsAddUp { .. }
+            | RunWarning::SmallMotion { .. }
             | RunWarning::StabilityLimited { .. }
             | RunWarning::CompanionEnded { .. } => None,
         }
@@ -271,12 +282,22 @@ impl RunWarning {
             RunWarning::EnergyUnsure { share } => energy(*share),
             RunWarning::PhaseUnsure { swings, off } => phase(*swings, *off),
             RunWarning::ErrorsAddUp { swings, requests } => errors_add_up(*swings, *requests),
-            RunWarning::StabilityLimited { limited, steps } => format!(
-                "the model is stiff: in {limited} of {steps} steps stability, not the error asked \
-                 for, kept an explicit method short; RADAU5 or AUTO takes longer ones"
-            ),
+            RunWarning::SmallMotion {
+                reach,
+                share,
+                error,
+            } => small_motion(*reach, *share, *error),
+            RunWarning::StabilityLimited { limited, steps } => stiff(*limited, *steps),
         }
     }
+}
+
+/// Returns in how many of all steps stability kept an explicit method short.
+fn stiff(limited: usize, steps: usize) -> String {
+    format!(
+        "the model is stiff: in {limited} of {steps} steps stability, not the error asked for, kept \
+         an explicit method short; RADAU5 or AUTO takes longer ones"
+    )
 }
 
 /// Returns which share of all energy its balance lacks.
@@ -303,6 +324,15 @@ fn errors_add_up(swings: f64, requests: f64) -> String {
         "nothing slows about {swings:.0} swings down, so their errors add up: over their width to some \
          {requests:.0} times the error asked for; a smaller ERROR makes it less, and --accuracy says \
          how far off results are"
+    )
+}
+
+/// Returns how small a motion is beside its model, and what that makes of its errors.
+fn small_motion(reach: f64, share: f64, error: f64) -> String {
+    format!(
+        "nothing moves by more than {reach:.0e} of the size of the model, or rad: errors are permitted \
+         in proportion to that size, here up to {share:.0e} of the motion; --error {error:.0e} makes \
+         them as small beside the motion as was asked"
     )
 }
 

@@ -94,10 +94,9 @@ impl Builder {
 
 #[cfg(test)]
 mod tests {
-    use super::super::random::Random;
+    use super::super::random::{Random, extend};
     use super::*;
-    use crate::expr::functions::Function;
-    use crate::expr::program::{BinaryOp, Comparison, UnaryOp, Work};
+    use crate::expr::program::Work;
 
     /// Records operations that `seed` says on six inputs, of which the last two change.
     fn recorded(seed: u64) -> Program {
@@ -106,27 +105,7 @@ mod tests {
         let layout = [0, 1, 2, 3, 4, 5].map(Input::Slot);
         let mut values: Vec<Value> = layout.iter().map(|&i| b.input(i)).collect();
         values.push(b.constant(0.3));
-        for _ in 0..40 {
-            let [x, y, z, w] = [(); 4].map(|()| values[random.below(values.len())]);
-            let value = match random.below(9) {
-                0 => b.unary(UnaryOp::Sin, x),
-                1 => b.unary(UnaryOp::Sqrt, x),
-                2 => b.binary(BinaryOp::Sub, x, y),
-                3 => b.binary(BinaryOp::Div, x, y),
-                4 => {
-                    let condition = b.compare(Comparison::Lt, x, y);
-                    b.select(condition, z, w)
-                }
-                5 => b.call(Function::Step, &[x, y, z, w, values[0]]),
-                6 => {
-                    let call = [x, y, z, w, values[0]];
-                    b.partial_of(Function::Step, &call, 0)
-                }
-                7 => b.binary(BinaryOp::Mul, x, y),
-                _ => b.binary(BinaryOp::Add, x, y),
-            };
-            values.push(value);
-        }
+        extend(&mut b, &mut random, &mut values, 40);
         let outputs = values.split_off(values.len() - 5);
         b.finish_with_inputs(&outputs, &layout)
     }

@@ -520,10 +520,8 @@ fn perform_any(steps: &[Step], factors: &[f64], r: &mut [Lane]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::random::Random;
+    use super::super::random::{Random, extend};
     use super::*;
-    use crate::expr::functions::Function;
-    use crate::expr::program::Comparison;
 
     /// Records operations that `seed` says on six inputs.
     fn recorded(seed: u64) -> Program {
@@ -532,25 +530,7 @@ mod tests {
         let layout = [0, 1, 2, 3, 4, 5].map(Input::Slot);
         let mut values: Vec<Value> = layout.iter().map(|&i| b.input(i)).collect();
         values.push(b.constant(0.3));
-        for _ in 0..60 {
-            let [x, y, z, w] = [(); 4].map(|()| values[random.below(values.len())]);
-            let value = match random.below(10) {
-                0 => b.unary(UnaryOp::Sin, x),
-                1 => b.unary(UnaryOp::Atan, x),
-                2 => b.binary(BinaryOp::Sub, x, y),
-                3 => b.binary(BinaryOp::Div, x, y),
-                4 => {
-                    let condition = b.compare(Comparison::Lt, x, y);
-                    b.select(condition, z, w)
-                }
-                5 => b.call(Function::Step, &[x, y, z, w, values[0]]),
-                6 => b.binary(BinaryOp::Atan2, x, y),
-                7 => b.binary(BinaryOp::Mul, x, y),
-                8 => b.unary(UnaryOp::Neg, x),
-                _ => b.binary(BinaryOp::Add, x, y),
-            };
-            values.push(value);
-        }
+        extend(&mut b, &mut random, &mut values, 60);
         let mut outputs = values.split_off(values.len() - 5);
         outputs.push(values[1]);
         b.finish_with_inputs(&outputs, &layout)

@@ -79,7 +79,7 @@ impl<'a> Channels<'a> {
 
     fn push(&mut self, packed: &mut Packed, column: usize, is_table: bool) {
         let of = &self.run.columns[column];
-        let values = || self.track.rows.iter().map(|&row| of.values[row]);
+        let values = || self.track.rows.iter().map(|&row| of.at(row));
         let finite = values().filter(|x| x.is_finite());
         let largest = finite.fold(0.0_f64, |a, x| a.max(x.abs()));
         let part = if is_table { TABLE_QUANTUM } else { QUANTUM };

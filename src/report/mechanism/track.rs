@@ -91,7 +91,7 @@ impl Track {
     fn frames(&self, run: &Run, columns: &[usize; 6]) -> Vec<Frame<f64>> {
         let degrees = columns.map(|c| run.columns[c].unit.to_lowercase().starts_with("deg"));
         let value = |row: usize, c: usize| {
-            let x = run.columns[columns[c]].values[row];
+            let x = run.value(columns[c], row);
             if degrees[c] { x.to_radians() } else { x }
         };
         let mut last = Frame::identity();
@@ -126,7 +126,7 @@ impl Track {
             let Some((columns, place_columns)) = found.filter(|(c, _)| seen.insert(c[0])) else {
                 continue;
             };
-            let value = |c: usize, row: usize| run.columns[c].values[row];
+            let value = |c: usize, row: usize| run.value(c, row);
             let values = self.rows.iter().map(|&row| columns.map(|c| value(c, row)));
             let values = values.collect();
             let places = place_columns.map_or_else(Vec::new, |place| {

@@ -156,7 +156,10 @@ impl Sink for Blocks {
             let held = self.open.first().map_or(0, Vec::len);
             let to = end.min(from + GROUP - held);
             for (open, column) in self.open.iter_mut().zip(&run.columns) {
-                open.extend_from_slice(&column.values[from..to]);
+                match column.values.get(from..to) {
+                    Some(values) => open.extend_from_slice(values),
+                    None => open.extend((from..to).map(|place| column.at(place))),
+                }
             }
             from = to;
             if self.open.first().is_some_and(|c| c.len() == GROUP) {

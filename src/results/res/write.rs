@@ -201,14 +201,14 @@ fn separated<'r>(run: &'r Run, owners: &[Option<usize>]) -> Vec<(&'r [f64], u8)>
     };
     let marks = (1..=shown.len()).map(|k| mark(shown.get(k)));
     (shown.iter().zip(marks))
-        .map(|(&i, mark)| (run.columns[i].values.as_slice(), mark))
+        .filter_map(|(&i, mark)| Some((run.columns.get(i)?.values.as_slice(), mark)))
         .collect()
 }
 
 /// Writes one row. `place`: where its values are.
 fn values(columns: &[(&[f64], u8)], place: usize, text: &mut Vec<u8>) {
     for (values, mark) in columns {
-        push_digits(values[place], text);
+        push_digits(values.get(place).copied().unwrap_or(f64::NAN), text);
         text.push(*mark);
     }
 }
