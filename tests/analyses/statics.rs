@@ -298,6 +298,54 @@ fn a_rotor_of_stiff_arms_swings_down() {
     }
 }
 
+/// A part that turns about a point on a bushing, and a state that only reads.
+fn read_by(function: &str) -> String {
+    let state = if function.is_empty() {
+        String::new()
+    } else {
+        format!("DIFF/1, IC=-1.5, FUNCTION={function}\n")
+    };
+    format!(
+        "{GROUND}MARKER/10, PART=1, QP=0.31,0.73,-0.27\nMARKER/11, PART=1, QP=1.1,-0.4,0.6\n\
+         PART/2, MASS=2, CM=20, IP=0.3,0.4,0.5, QG=0.14,1.02,-0.68\nMARKER/20, PART=2, QP=0.57,0.21,0.71\n\
+         MARKER/21, PART=2, QP=0.17,-0.29,0.41\nMARKER/22, PART=2, QP=0.77,-0.59,0.61, REULER=0.4,0.7,-0.3\n\
+         JPRIM/1, ATPOINT, I=21, J=10\nACCGRAV/IGRAV=3, JGRAV=-9, KGRAV=2\n\
+         BUSHING/1, I=22, J=11, K=30,40,20, KT=5,8,4, FORCE=1,-2,1\n{state}END\n"
+    )
+}
+
+#[test]
+fn a_state_that_only_reads_does_not_keep_a_mechanism_from_its_rest() {
+    let columns = ["DX(20)", "DY(20)", "DZ(20)"];
+    let found = |text: &str| {
+        let mut s = session(text, &columns);
+        rest(&mut s);
+        stable(&s);
+        columns.map(|c| last(&s, c))
+    };
+    let alone = found(&read_by(""));
+    // distances that the joint keeps, so that only rounding changes them; what moves; angles
+    let read = [
+        "DM(20,21)",
+        "DY(21)",
+        "DX(21)-3*DZ(21)",
+        "DM(22,11)",
+        "DX(20)*DZ(20)",
+        "AX(20)",
+        "PITCH(22)",
+        "-DIF(1)**3",
+    ];
+    for read in read {
+        for (own, gain) in [(1.1, 0.3), (0.013, 1.9), (700.0, 900.0)] {
+            let text = read_by(&format!("-{own}*DIF(1)+{gain}*({read})"));
+            let with = found(&text);
+            for (a, b) in alone.iter().zip(with) {
+                assert!((a - b).abs() < 1e-9, "{read}, {own}: {b} against {a}");
+            }
+        }
+    }
+}
+
 #[test]
 fn what_integrates_a_velocity_winds_up_until_it_holds_the_load() {
     let text = format!(

@@ -122,6 +122,8 @@ struct Left {
     /// what rounding does in each coordinate, and its size in the metric
     noise: DVector<f64>,
     floor: f64,
+    /// what it does in the equations of the states
+    states: f64,
     /// hardly more than that is left
     small: bool,
 }
@@ -201,6 +203,7 @@ impl Settler<'_> {
         Left {
             noise,
             floor,
+            states: self.state_noise(p, jacobian),
             small,
         }
     }
@@ -249,10 +252,11 @@ impl Settler<'_> {
         let mut wanted = 0.0;
         loop {
             let pace = Pace::new(length, jacobian, self.n_v());
+            let floor = [left.floor, left.states];
             let found = self.step(p, jacobian, &pace).and_then(|step| {
                 wanted = self.excess(&step);
-                (self.attempt(p, jacobian, left.floor, step.clone()))
-                    .or_else(|| self.corrected(p, left.floor, step, &pace))
+                (self.attempt(p, jacobian, floor, step.clone()))
+                    .or_else(|| self.corrected(p, jacobian, floor, step, &pace))
             });
             if let Some((point, quality, shortened)) = found {
                 return Ok(Taken {
@@ -294,6 +298,19 @@ impl Settler<'_> {
             let terms = (unit.iter().enumerate()).map(|(v, u)| (jacobian[(i, v)] * u).powi(2));
             f64::EPSILON * terms.sum::<f64>().sqrt()
         })
+    }
+
+    /// Returns what the last digits of positions and states make of the equations of the states: in
+    /// balance these are differences of larger terms.
+    fn state_noise(&self, p: &Point, jacobian: &DMatrix<f64>) -> f64 {
+        let (n, l) = (self.n_v(), self.system.scene.layout);
+        let mut unit = self.units();
+        unit.extend(self.states.iter().map(|&x| p.numbers[l.x_at(x)]));
+        let terms = (unit.iter().enumerate()).map(|(v, u)| {
+            let column = jacobian.view((n, v), (self.states.len(), 1));
+            column.norm_squared() * u * u
+        });
+        16.0 * f64::EPSILON * terms.sum::<f64>().sqrt()
     }
 
     /// Returns a radian, or the size of the mechanism, for each coordinate.

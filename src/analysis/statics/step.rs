@@ -183,12 +183,13 @@ impl Settler<'_> {
     }
 
     /// Tries a step: the point at its end, how far that is from what was foretold (relative to the
-    /// limit, beyond the `floor` that rounding makes), and whether its length had to be limited.
+    /// limit, beyond the `floor` that rounding makes of loads and of states), and whether its
+    /// length had to be limited.
     pub(super) fn attempt(
         &mut self,
         p: &Point,
         jacobian: &DMatrix<f64>,
-        floor: f64,
+        floor: [f64; 2],
         mut step: DVector<f64>,
     ) -> Option<(Point, f64, bool)> {
         let n = self.n_v();
@@ -209,21 +210,34 @@ impl Settler<'_> {
         let foretold = DVector::from_iterator(n, (0..n).map(|i| p.force[i] + change[i]));
         let (_, foretold) = p.rows.balanced(&foretold);
         let off = [
-            (p.metric.size(&(&next.force - &foretold)) - floor).max(0.0),
-            (0..self.states.len())
+            (p.metric.size(&(&next.force - &foretold)) - floor[0]).max(0.0),
+            ((0..self.states.len())
                 .map(|k| (next.state[k] - p.state[k] - change[n + k]).powi(2))
                 .sum::<f64>()
-                .sqrt(),
+                .sqrt()
+                - floor[1])
+                .max(0.0),
         ];
         let expected = [
             p.left[0] + p.metric.size(&(&foretold - &p.force)),
-            p.left[1] + change.rows(n, self.states.len()).norm(),
+            p.left[1] + self.stirred(jacobian, &step),
         ];
         let quality = (0..2)
             .filter(|&k| off[k] > 0.0)
             .map(|k| off[k] / (0.3 * expected[k]))
             .fold(0.0, f64::max);
         (quality <= 1.0).then_some((next, quality, shortened))
+    }
+
+    /// Returns how far a step moves the equations of the states: by coordinates and by the states
+    /// that follow them, whose shares cancel where the states are in balance.
+    fn stirred(&self, jacobian: &DMatrix<f64>, step: &DVector<f64>) -> f64 {
+        let (n, d) = (self.n_v(), self.states.len());
+        let share = |from, count| {
+            let part = jacobian.view((n, from), (d, count)) * step.rows(from, count);
+            part.norm()
+        };
+        share(0, n) + share(n, d)
     }
 
     /// Tries a step again whose end is not what was foretold: as an implicit step, iterated until
@@ -239,7 +253,8 @@ impl Settler<'_> {
     pub(super) fn corrected(
         &mut self,
         p: &Point,
-        floor: f64,
+        jacobian: &DMatrix<f64>,
+        floor: [f64; 2],
         step: DVector<f64>,
         pace: &Pace,
     ) -> Option<(Point, f64, bool)> {
@@ -269,12 +284,12 @@ impl Settler<'_> {
             // the rows have turned as well: what they take is taken there
             let (_, rest) = next.rows.balanced(&(&next.force - &moving));
             let off = [
-                (next.metric.size(&rest) - floor).max(0.0),
-                (&next.state - advance(&step)).norm(),
+                (next.metric.size(&rest) - floor[0]).max(0.0),
+                ((&next.state - advance(&step)).norm() - floor[1]).max(0.0),
             ];
             let expected = [
                 p.left[0] + p.metric.size(&(foretold - &p.force)),
-                p.left[1] + (advance(&step) - &p.state).norm(),
+                p.left[1] + (advance(&step) - &p.state).norm() + self.stirred(jacobian, &step),
             ];
             let quality = (0..2)
                 .filter(|&k| off[k] > 0.0)
@@ -291,8 +306,8 @@ impl Settler<'_> {
             let mut rhs = rest.as_slice().to_vec();
             rhs.extend((&next.state - advance(&step)).iter());
             // stiff directions have turned on the way: the derivatives have to be those of the end
-            let jacobian = self.jacobian(&next);
-            let delta = self.solved(&next, &jacobian, pace, rhs, false)?;
+            let there = self.jacobian(&next);
+            let delta = self.solved(&next, &there, pace, rhs, false)?;
             // go on in the directions of the end: those that are soft at the beginning are stiff
             // there
             step += &delta;
