@@ -294,7 +294,7 @@ impl Session {
             self.warn(RunWarning::SmallMotion {
                 reach,
                 share: asked * floor / reach,
-                error: asked * reach / floor,
+                error: (asked * reach / floor).max(FINEST),
             });
         }
     }
@@ -308,6 +308,8 @@ impl Session {
     }
 }
 
+/// Smallest request that makes sense to advise.
+const FINEST: f64 = 1e-13;
 /// Way of a coordinate, or velocity, over what is typical of it, up to which everything rests.
 const RESTING: f64 = 1e-9;
 /// The same, over the part of what is typical that errors count from at least, up to which a motion

@@ -23,8 +23,9 @@ pub enum Folding {
     /// Zeros and ones are structure: `0·x → 0`, `x + 0 → x`, `x − x → 0`, `(x + y) − y → x`, `0/x
     /// → 0`. For recorded physics, where a zero is a part that is not there.
     Structural,
-    /// Of these only what keeps every bit of finite numbers, but for the sign of a zero: not `(x +
-    /// y) − y → x`. For derivatives of what has been recorded.
+    /// Of these only zeros and ones that are factors or terms, which keeps every bit of finite
+    /// numbers but for the sign of a zero: neither `(x + y) − y → x` nor `x − x → 0`. For
+    /// derivatives of what has been recorded.
     Finite,
 }
 
@@ -241,6 +242,8 @@ impl Builder {
     ) -> Option<Value> {
         use BinaryOp::{Div, Mul, Pow, Sub};
         let structural = self.folding.is_structural();
+        // a number that is none does not cancel
+        let cancels = self.folding == Folding::Structural;
         let before = ca.and_then(|c| Some((b, self.folding.number_before(op, c)?)));
         let behind = || cb.and_then(|c| Some((a, self.folding.number_behind(op, c)?)));
         match before.or_else(behind) {
@@ -252,10 +255,10 @@ impl Builder {
             Sub if ca == Some(0.0) && (structural || ca.is_some_and(f64::is_sign_negative)) => {
                 return Some(self.unary(UnaryOp::Neg, b));
             }
-            Sub if structural && a == b => return Some(self.constant(0.0)),
+            Sub if cancels && a == b => return Some(self.constant(0.0)),
             Mul | Div if cb == Some(-1.0) => return Some(self.unary(UnaryOp::Neg, a)),
             Mul if ca == Some(-1.0) => return Some(self.unary(UnaryOp::Neg, b)),
-            Div if structural && a == b => return Some(self.constant(1.0)),
+            Div if cancels && a == b => return Some(self.constant(1.0)),
             // a power of two divides as its reciprocal multiplies, to the bit
             Div if cb.is_some_and(is_power_of_two) => {
                 let reciprocal = self.constant(1.0 / cb?);
@@ -264,9 +267,7 @@ impl Builder {
             Pow => return self.simpler_power(a, cb?),
             _ => {}
         }
-        if self.folding == Folding::Structural
-            && let Some(v) = self.cancelled(op, a, b, ca, cb)
-        {
+        if cancels && let Some(v) = self.cancelled(op, a, b, ca, cb) {
             return Some(v);
         }
         self.without_minus_signs(op, a, b, ca, cb)
@@ -438,7 +439,7 @@ impl Builder {
         if a == b && comparison == Comparison::Lt {
             return self.constant(0.0);
         }
-        if a == b && self.folding.is_structural() {
+        if a == b && self.folding == Folding::Structural {
             return self.constant(1.0);
         }
         // "0 < condition" is the condition

@@ -94,20 +94,15 @@ impl Builder {
 
 #[cfg(test)]
 mod tests {
-    use super::super::random::{KINDS, Random, extend};
+    use super::super::random;
     use super::*;
     use crate::expr::program::Work;
 
     /// Records operations that `seed` says on six inputs, of which the last two change.
     fn recorded(seed: u64) -> Program {
-        let mut random = Random(seed);
-        let mut b = Builder::new(Folding::Structural);
-        let layout = [0, 1, 2, 3, 4, 5].map(Input::Slot);
-        let mut values: Vec<Value> = layout.iter().map(|&i| b.input(i)).collect();
-        values.push(b.constant(0.3));
-        extend(&mut b, &mut random, &mut values, 40, KINDS);
+        let (b, mut values) = random::recorded(seed, 40);
         let outputs = values.split_off(values.len() - 5);
-        b.finish_with_inputs(&outputs, &layout)
+        b.finish_with_inputs(&outputs, &[0, 1, 2, 3, 4, 5].map(Input::Slot))
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Random numbers and recordings for tests: the same ones on every run.
 
 #[cfg(feature = "solver")]
-use super::{BinaryOp, Builder, Comparison, UnaryOp, Value};
+use super::{BinaryOp, Builder, Comparison, Folding, Input, UnaryOp, Value};
 #[cfg(feature = "solver")]
 use crate::expr::functions::Function;
 
@@ -18,25 +18,18 @@ impl Random {
     }
 }
 
-/// Kinds of operations that [`extend`] records.
+/// Records so many operations on six inputs, with values wherever these have: the inputs come first
+/// among the values, the last operations last.
 #[cfg(feature = "solver")]
-pub(super) const KINDS: usize = 12;
-/// Those before roots and partial derivatives, which may be no numbers.
-#[cfg(feature = "solver")]
-pub(super) const PLAIN_KINDS: usize = 10;
-
-/// Records so many operations of the first `kinds` on values that there are.
-#[cfg(feature = "solver")]
-pub(super) fn extend(
-    b: &mut Builder,
-    random: &mut Random,
-    values: &mut Vec<Value>,
-    n: usize,
-    kinds: usize,
-) {
+pub(super) fn recorded(seed: u64, n: usize) -> (Builder, Vec<Value>) {
+    let mut random = Random(seed);
+    let mut b = Builder::new(Folding::Structural);
+    let mut values: Vec<Value> = (0..6).map(|k| b.input(Input::Slot(k))).collect();
+    let [low, high] = [0.3, 0.9].map(|c| b.constant(c));
+    values.push(low);
     for _ in 0..n {
         let [x, y, z, w] = [(); 4].map(|()| values[random.below(values.len())]);
-        let value = match random.below(kinds) {
+        let value = match random.below(12) {
             0 => b.unary(UnaryOp::Sin, x),
             1 => b.unary(UnaryOp::Atan, x),
             2 => b.binary(BinaryOp::Sub, x, y),
@@ -50,12 +43,14 @@ pub(super) fn extend(
             7 => b.binary(BinaryOp::Mul, x, y),
             8 => b.unary(UnaryOp::Neg, x),
             9 => b.binary(BinaryOp::Add, x, y),
-            10 => b.unary(UnaryOp::Sqrt, x),
-            _ => {
-                let call = [x, y, z, w, values[0]];
-                b.partial_of(Function::Step, &call, 0)
+            10 => {
+                let square = b.binary(BinaryOp::Mul, x, x);
+                let positive = b.binary(BinaryOp::Add, square, low);
+                b.unary(UnaryOp::Sqrt, positive)
             }
+            _ => b.partial_of(Function::Step, &[x, low, y, high, z], 0),
         };
         values.push(value);
     }
+    (b, values)
 }

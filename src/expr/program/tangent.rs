@@ -556,20 +556,15 @@ fn perform_on<const N: usize, const FINITE: bool>(code: Code<'_>, r: &mut [Lane]
 
 #[cfg(test)]
 mod tests {
-    use super::super::random::{PLAIN_KINDS, Random, extend};
+    use super::super::random;
     use super::*;
 
     /// Records operations that `seed` says on six inputs.
     fn recorded(seed: u64) -> Program {
-        let mut random = Random(seed);
-        let mut b = Builder::new(Folding::Structural);
-        let layout = [0, 1, 2, 3, 4, 5].map(Input::Slot);
-        let mut values: Vec<Value> = layout.iter().map(|&i| b.input(i)).collect();
-        values.push(b.constant(0.3));
-        extend(&mut b, &mut random, &mut values, 60, PLAIN_KINDS);
+        let (b, mut values) = random::recorded(seed, 60);
         let mut outputs = values.split_off(values.len() - 5);
         outputs.push(values[1]);
-        b.finish_with_inputs(&outputs, &layout)
+        b.finish_with_inputs(&outputs, &[0, 1, 2, 3, 4, 5].map(Input::Slot))
     }
 
     #[test]
