@@ -13,6 +13,7 @@ mod check;
 mod configuration;
 mod convert;
 pub mod data;
+mod doubted;
 mod draw;
 mod elements;
 mod eval;

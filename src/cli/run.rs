@@ -1,6 +1,7 @@
 //! `cognate run`: a model with its commands, from file to results.
 
 use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs};
+use super::doubted;
 use super::limit::Guard;
 use super::progress::Progress;
 use super::render::Sources;
@@ -120,7 +121,7 @@ pub fn run(args: &Args) -> Outcome {
     let is_command = has_commands(&args.model);
     let job = job(args, is_command)?;
     let args = &args.completed(&job.setup);
-    let doubts = remark_on_warnings(args, &job);
+    let [read, about_mechanism] = doubted::remark_on(&job, args.quiet);
     if !args.quiet {
         remark_on_loads(&job);
     }
@@ -131,6 +132,7 @@ pub fn run(args: &Args) -> Outcome {
     let seconds = &mut session.run.record.seconds;
     seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;
+    let doubts: Vec<_> = read.iter().chain(&about_mechanism).cloned().collect();
     (session.run.log).extend(doubts.iter().map(|d| Event::Warning(d.to_string())));
     session.run.record.doubts.clone_from(&doubts);
     let folder = args.out.as_deref();
@@ -178,7 +180,7 @@ pub fn run(args: &Args) -> Outcome {
             d.file = Some(commands.clone());
         }
         // what is doubted may be why
-        let said = doubts.into_iter().chain(diagnostics);
+        let said = read.into_iter().chain(diagnostics);
         let all: Vec<_> = said.chain(session.model.doubts()).collect();
         return Err(Failure::in_model(&dataset, all));
     }
@@ -243,12 +245,7 @@ fn remark_on_loads(job: &Job) {
             .any(|n| model.is_active(ElementKind::id(kind, n)))
     };
     let is_pushed = ElementKind::of(Family::Force).any(pushes);
-    // commands may change what acts
-    let is_final = !job
-        .steps
-        .iter()
-        .any(|s| matches!(s.command, Command::Change(_) | Command::Activate { .. }));
-    if is_final && !is_pushed && setup::loads_of(model).is_empty() {
+    if !job.changes_the_model() && !is_pushed && setup::loads_of(model).is_empty() {
         remark("no load acts: no motion, no force, no gravity, no initial velocity");
     }
 }
@@ -277,36 +274,6 @@ fn told(
     let events = errors.iter().map(|e| Event::Error(e.to_string()));
     session.run.log.extend(events);
     (Status::Model, Some(errors))
-}
-
-/// Remarks on the number of warnings about a dataset, and on the notes about it and its commands;
-/// returns the warnings.
-fn remark_on_warnings(args: &Args, job: &Job) -> Vec<Diagnostic> {
-    if !args.quiet {
-        remark_on_notes(job.reading.diagnostics.iter().chain(&job.remarks));
-    }
-    let is_warning = |d: &&Diagnostic| d.severity == Severity::Warning;
-    let doubts: Vec<Diagnostic> =
-        (job.reading.diagnostics.iter().filter(is_warning).cloned()).collect();
-    let warnings = doubts.len();
-    if !args.quiet && warnings > 0 {
-        remark(format!(
-            "{warnings} warning{} in the dataset: cognate check tells more",
-            if warnings == 1 { "" } else { "s" }
-        ));
-    }
-    doubts
-}
-
-/// Remarks on notes about a dataset or its commands.
-fn remark_on_notes<'a>(found: impl Iterator<Item = &'a Diagnostic>) {
-    for note in found.filter(|d| d.severity == Severity::Note) {
-        let file = (note.file.as_deref()).map_or(String::new(), |file| format!("{file}: "));
-        let element = note
-            .named()
-            .map_or(String::new(), |name| format!("{name}: "));
-        remark(format!("{file}{element}{}", note.message));
-    }
 }
 
 /// Checks the columns and elements that the command line asks for, before anything is solved or
@@ -414,6 +381,14 @@ pub(super) struct Job {
     pub remarks: Vec<Diagnostic>,
     /// time that the bytes of the dataset took, in s
     pub read_seconds: f64,
+}
+
+impl Job {
+    /// Whether commands change the model, or what is active in it.
+    pub fn changes_the_model(&self) -> bool {
+        let changes = |s: &Step| matches!(s.command, Command::Change(_) | Command::Activate { .. });
+        self.steps.iter().any(changes)
+    }
 }
 
 /// Returns the exit of a status.

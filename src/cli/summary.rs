@@ -286,7 +286,8 @@ fn believed(accuracy: &Accuracy) -> String {
 /// Number of warnings of one kind that are shown.
 const ALIKE: usize = 3;
 
-/// Selects the warnings to show, a few of each kind; the record has all of them.
+/// Selects the warnings to show, a few of each kind, those first that name an element; the record
+/// has all of them.
 fn warnings(all: &[Warning]) -> Vec<String> {
     let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
     let few = |w: &&Warning| {
@@ -294,9 +295,10 @@ fn warnings(all: &[Warning]) -> Vec<String> {
         *count += 1;
         *count <= ALIKE
     };
-    let shown = all.iter().filter(few).map(Warning::sentence);
-    let mut shown: Vec<String> = shown.collect();
+    let mut shown: Vec<&Warning> = all.iter().filter(few).collect();
+    shown.sort_by_key(|w| w.subject.is_none());
     let hidden = all.len() - shown.len();
+    let mut shown: Vec<String> = shown.into_iter().map(Warning::sentence).collect();
     if hidden > 0 {
         shown.push(format!("{hidden} more like these are in the record"));
     }

@@ -64,6 +64,14 @@ fn fed() -> Vec<(&'static str, &'static str, String)> {
             "SFORCE/3",
             format!("{walls}SFORCE/3, TRANSLATION, I=3, J=4, FUNCTION=3*VZ(3,4,4)\n"),
         ),
+        (
+            "a pendulum whose spring is far stiffer than its damper is strong",
+            "SFORCE/1",
+            format!(
+                "{pendulum}SFORCE/1, ROTATION, I=3, J=1, FUNCTION=3*WZ(3,1)\n\
+                SFORCE/2, ROTATION, I=3, J=1, FUNCTION=-500*AZ(3,1)\n"
+            ),
+        ),
     ]
 }
 

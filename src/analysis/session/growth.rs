@@ -8,7 +8,8 @@
 //! ```
 //!
 //! A body that falls or is driven grows as a power of time: from one quarter to the next by 16 at
-//! most if its speed does as t². The force that feeds it has the largest power in the end.
+//! most if its speed does as t². The force that feeds it has the largest power in the end, springs
+//! aside: with all velocities reversed their power is the opposite.
 
 use crate::analysis::system::System;
 use crate::model::ElementId;
@@ -117,7 +118,7 @@ fn speeds_grow<'a>(
 pub(super) struct Growth {
     /// largest kinetic energy in the end over all energy in the first quarter
     pub factor: f64,
-    /// the force with the largest power in the end
+    /// the force that feeds it in the end
     pub fed_by: Option<ElementId>,
 }
 
@@ -148,15 +149,21 @@ fn of<'a>(
     })
 }
 
-/// Returns the force with the largest power at a state.
+/// Returns the force that feeds a motion at a state: that with the largest power of what changes
+/// its sign with the velocities, which springs have none of; where there is none, that with the
+/// largest power.
 pub(super) fn fed_by(system: &System, numbers: &[f64]) -> Option<ElementId> {
     let scene = system.configured();
-    let at = Equations::new(scene, numbers);
-    let powers = scene.forces.iter().map(|f| (power(f, &at), f.id));
-    let most = powers
-        .filter(|(power, _)| *power > 0.0)
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    most.map(|(_, id)| id)
+    let mut back = numbers.to_vec();
+    back[scene.layout.v()].iter_mut().for_each(|v| *v = -*v);
+    let [forth, back] = [numbers, &back].map(|row| Equations::new(scene, row));
+    let largest = |of: &dyn Fn(&ForceElement) -> f64| {
+        let powers = scene.forces.iter().map(|f| (of(f), f.id));
+        let fed = powers.filter(|(power, _)| *power > 0.0);
+        fed.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)
+    };
+    let damped = |f: &ForceElement| 0.5 * (power(f, &forth) + power(f, &back));
+    largest(&damped).or_else(|| largest(&|f| power(f, &forth)))
 }
 
 /// Returns the power of a force, and of its reaction on J.

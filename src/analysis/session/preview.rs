@@ -7,7 +7,7 @@ use crate::analysis::verify::driving::driving;
 use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::analysis::watch::Unwatched;
 use crate::diagnostic::{Cause, Diagnostic};
-use crate::model::{ElementId, ElementKind, Family, Model};
+use crate::model::{ElementId, Family};
 
 /// Misalignment of a joint as drawn, relative to the mechanism or in rad, that numbers typed with
 /// four digits make.
@@ -28,21 +28,6 @@ fn is_rounding(warning: &Warning, mechanism: f64) -> bool {
     }
 }
 
-/// Warns of a model with weights or forces that names no units.
-fn without_units(model: &Model) -> Option<Diagnostic> {
-    let forces = ElementKind::of(Family::Force);
-    let pushed = forces
-        .into_iter()
-        .any(|kind| !model.numbers(kind).is_empty());
-    let what =
-        "there is no UNITS: a force is a mass times an acceleration, in whatever units these are";
-    (model.units.is_none() && (pushed || model.gravity != [0.0; 3])).then(|| {
-        Diagnostic::warning("no_units", what)
-            .element("UNITS")
-            .help("UNITS/SYSTEM=MKS says that they go together; in UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND they do not")
-    })
-}
-
 impl Session {
     /// Brings the model into its first state and returns what is wrong with it, and what is
     /// doubtful; motions are looked at until `end`.
@@ -52,7 +37,6 @@ impl Session {
         };
         let warned = self.run.record.warnings.iter().map(Diagnostic::from);
         found.extend(warned);
-        found.extend(without_units(&self.model));
         found
     }
 

@@ -9,6 +9,7 @@ use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
 use crate::analysis::time::drives;
 use crate::analysis::time::output::Output;
+use crate::analysis::verify::driving::driving;
 use crate::analysis::verify::massless::massless;
 use crate::analysis::warning::{RunWarning, Warning};
 use crate::analysis::watch::Watch;
@@ -241,6 +242,12 @@ impl Session {
         }
         for found in &system.scene.warnings {
             self.warn(Warning::Scene(found.clone()));
+        }
+        let is_first = self.run.record.simulations.is_empty();
+        if is_first {
+            for found in driving(&system.scene, &self.model) {
+                self.warn(Warning::Scene(found));
+            }
         }
         let leap = self.leap.take();
         let leap = leap.filter(|leap| leap.leaps().is_none_or(|part| self.leapt.insert(part)));

@@ -12,7 +12,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::interpolation::Bindings;
-use crate::expr::measures::Measure;
+use crate::expr::measures::{self, Measure};
 use crate::expr::program::Input;
 use crate::expr::walk::Host;
 use crate::model::{COMPONENTS, ElementId, ElementKind, Formula, Model};
@@ -59,7 +59,7 @@ pub(in crate::analysis) fn driving(scene: &Scene, model: &Model) -> Vec<Diagnost
             ["velocity", "displacement", "force"]
         };
         let slopes = Slopes::of(scene, model, &bindings, c)?;
-        if let Some(slope) = slopes.along_displacement() {
+        if let Some(slope) = slopes.along_displacement {
             let what = format!(
                 "{}: the {force} on {} grows with its {place}, by {slope:.4} for each unit: a spring that pushes away",
                 c.argument,
@@ -68,7 +68,7 @@ pub(in crate::analysis) fn driving(scene: &Scene, model: &Model) -> Vec<Diagnost
             let d = Diagnostic::warning("negative_stiffness", what).element(c.id);
             return Some(d.help("a spring is against the displacement: in a force on I, -K*(DM(I, J) - length)"));
         }
-        let slope = slopes.along_rate()?;
+        let slope = slopes.along_rate?;
         let what = format!(
             "{}: the {force} on {} grows with its {rate}, by {slope:.4} for each unit: it feeds energy instead of taking it",
             c.argument,
@@ -131,23 +131,31 @@ fn components<'m>(scene: &Scene, model: &'m Model) -> Vec<Component<'m>> {
     all
 }
 
-/// Values of a component at samples: by time, by displacement, by rate.
+/// The slopes of a component that drive, in all samples.
 struct Slopes {
-    values: Vec<Vec<f64>>,
-    /// size of a unit of displacements and rates
-    one: f64,
+    /// the largest slope along the rate, where none is negative
+    along_rate: Option<f64>,
+    /// the slope along the displacement at rest, where it is the same and positive everywhere
+    along_displacement: Option<f64>,
 }
 
 impl Slopes {
-    /// Evaluates a component at all samples; `None` where it has no value at one.
+    /// Evaluates a component at samples until none of the two can be; `None` where it has no value
+    /// at one.
     fn of(scene: &Scene, model: &Model, bindings: &Bindings, c: &Component<'_>) -> Option<Self> {
         let Formula::Expression { text, .. } = c.function else {
             return None;
         };
         let expr = text.expression().ok()?;
         let one = if c.turns { 1.0 } else { scene.length };
-        let mut values = Vec::new();
+        let inputs = expr.inputs();
+        if !inputs.iter().any(|i| moves(*i)) {
+            return None;
+        }
+        let mut rate = Rising::new(inputs.iter().any(|i| has_rate(*i)));
+        let mut place = Constant::default();
         for time in TIMES {
+            let mut before: Option<(f64, f64)> = None;
             for displacement in DISPLACEMENTS {
                 let at = |rate: f64| {
                     let moved = Moved {
@@ -162,49 +170,89 @@ impl Slopes {
                     };
                     expr.eval_with(&moved).ok().filter(|x| x.is_finite())
                 };
-                values.push(RATES.into_iter().map(at).collect::<Option<Vec<f64>>>()?);
-            }
-        }
-        Some(Self { values, one })
-    }
-
-    /// Returns the largest slope along the rate, where none is negative.
-    fn along_rate(&self) -> Option<f64> {
-        let mut largest: Option<f64> = None;
-        for values in &self.values {
-            for (pair, rates) in values.windows(2).zip(RATES.windows(2)) {
-                let change = pair[1] - pair[0];
-                let least = LEAST_SLOPE * pair[0].abs().max(pair[1].abs());
-                if change < -least {
-                    return None;
-                }
-                if change > least {
-                    let slope = change / ((rates[1] - rates[0]) * self.one);
-                    largest = Some(largest.map_or(slope, |l: f64| l.max(slope)));
-                }
-            }
-        }
-        largest
-    }
-
-    /// Returns the slope along the displacement at rest, where it is the same and positive
-    /// everywhere.
-    fn along_displacement(&self) -> Option<f64> {
-        let mut same: Option<f64> = None;
-        for at_time in self.values.chunks(DISPLACEMENTS.len()) {
-            for (pair, places) in at_time.windows(2).zip(DISPLACEMENTS.windows(2)) {
+                let values = match rate.may_be {
+                    true => RATES.into_iter().map(at).collect::<Option<Vec<f64>>>()?,
+                    // without a rate the value at rest is that at any
+                    false => vec![at(0.0)?; RATES.len()],
+                };
+                rate.see(&values, one);
                 // between the two smallest rates
-                let at_rest = |values: &[f64]| 0.5 * (values[1] + values[2]);
-                let change = at_rest(&pair[1]) - at_rest(&pair[0]);
-                let slope = change / ((places[1] - places[0]) * self.one);
-                let scale = at_rest(&pair[0]).abs() / self.one;
-                let known = *same.get_or_insert(slope);
-                if slope <= 1e-6 * scale || (slope - known).abs() > 1e-6 * (slope.abs() + scale) {
+                let here = (displacement, 0.5 * (values[1] + values[2]));
+                if let Some(before) = before.replace(here) {
+                    place.see(before, here, one);
+                }
+                if !rate.may_be && !place.may_be() {
                     return None;
                 }
             }
         }
-        same
+        Some(Self {
+            along_rate: rate.largest.filter(|_| rate.may_be),
+            along_displacement: place.slope.filter(|_| place.may_be()),
+        })
+    }
+}
+
+/// Whether an input changes as a body moves: constants, TIME and MODE do not.
+fn moves(input: Input) -> bool {
+    !matches!(input, Input::Time | Input::Mode)
+}
+
+/// Whether an input may change with the velocity of a body.
+fn has_rate(input: Input) -> bool {
+    match input {
+        Input::Measure(measure, _) => measure.row().family != measures::Family::Displacement,
+        other => moves(other),
+    }
+}
+
+/// A value that rises with the rate somewhere and falls nowhere.
+struct Rising {
+    may_be: bool,
+    largest: Option<f64>,
+}
+
+impl Rising {
+    fn new(may_be: bool) -> Self {
+        Self {
+            may_be,
+            largest: None,
+        }
+    }
+
+    /// Sees the values at all rates, which are so many units of a size.
+    fn see(&mut self, values: &[f64], one: f64) {
+        for (pair, rates) in values.windows(2).zip(RATES.windows(2)) {
+            let change = pair[1] - pair[0];
+            let least = LEAST_SLOPE * pair[0].abs().max(pair[1].abs());
+            self.may_be &= change >= -least;
+            if change > least {
+                let slope = change / ((rates[1] - rates[0]) * one);
+                self.largest = Some(self.largest.map_or(slope, |l: f64| l.max(slope)));
+            }
+        }
+    }
+}
+
+/// A slope along the displacement that is the same wherever it was seen.
+#[derive(Default)]
+struct Constant {
+    slope: Option<f64>,
+    differs: bool,
+}
+
+impl Constant {
+    fn may_be(&self) -> bool {
+        !self.differs
+    }
+
+    /// Sees two displacements, in units of a size, with the values there.
+    fn see(&mut self, (x0, y0): (f64, f64), (x1, y1): (f64, f64), one: f64) {
+        let slope = (y1 - y0) / ((x1 - x0) * one);
+        let scale = y0.abs() / one;
+        let known = *self.slope.get_or_insert(slope);
+        self.differs |=
+            slope <= 1e-6 * scale || (slope - known).abs() > 1e-6 * (slope.abs() + scale);
     }
 }
 

@@ -42,6 +42,7 @@ pub fn run(args: &Args) -> Outcome {
     // what is doubted in the dataset may be why freedoms are not those that were meant
     let doubted = model.check().into_iter();
     let doubted = doubted.filter(|d| d.severity == Severity::Warning);
+    let doubted = doubted.chain(model.doubts());
     let doubted: Vec<Diagnostic> = doubted.map(|d| dataset.locate(d)).collect();
     let found = verify(&model).map_err(|d| Failure::in_model(&dataset, d))?;
     if args.json {

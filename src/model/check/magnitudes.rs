@@ -312,3 +312,16 @@ fn short(x: f64) -> String {
         text
     }
 }
+
+/// A model with weights or forces names its units.
+pub(super) fn units_are_given(model: &Model, out: &mut Out) {
+    let mut forces = ElementKind::of(Family::Force);
+    let is_pushed = forces.any(|kind| !model.numbers(kind).is_empty());
+    if model.units.is_some() || !(is_pushed || model.gravity != [0.0; 3]) {
+        return;
+    }
+    let what =
+        "there is no UNITS: a force is a mass times an acceleration, in whatever units these are";
+    let d = Diagnostic::warning("no_units", what).element("UNITS");
+    out.push(d.help("UNITS/SYSTEM=MKS says that they go together; in UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND they do not"));
+}

@@ -120,7 +120,7 @@ pub const RULES: &[Rule] = &[
 ];
 
 /// All doubts about the mechanism that a model without mistakes makes: joints that stand twice or
-/// not at all, parts that nothing holds.
+/// not at all, parts that nothing holds, forces without units.
 pub const DOUBTS: &[Rule] = &[
     ("parts are held", held::parts_are_held),
     ("torques have an axis", held::torques_have_an_axis),
@@ -130,6 +130,7 @@ pub const DOUBTS: &[Rule] = &[
         superseded::joints_have_no_old_friction,
     ),
     ("joints stand once", constraints_twice::joints_stand_once),
+    ("units are given", magnitudes::units_are_given),
 ];
 
 impl Model {
@@ -168,7 +169,8 @@ impl Model {
         for (_, doubt) in DOUBTS {
             doubt(self, &mut out);
         }
-        out.sort_by_key(|d| (d.line, d.column));
+        // what is about no element comes last
+        out.sort_by_key(|d| (d.line == 0, d.line, d.column));
         out
     }
 }
