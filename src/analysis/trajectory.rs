@@ -14,7 +14,14 @@ pub enum Ended {
     /// the method could not go on
     Stop(Stop),
     /// states downstream of the mechanism could not go on
-    Downstream(Stop),
+    Downstream {
+        /// why
+        stop: Stop,
+        /// all numbers where they stand
+        stands: Vec<f64>,
+        /// their rates there   (n_downstream)
+        rates: Vec<f64>,
+    },
     /// a sensor asked: its place in [`Scene::sensors`](crate::scene::Scene::sensors)
     Sensor(usize),
     /// a contact of curves ends

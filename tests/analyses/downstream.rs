@@ -441,6 +441,32 @@ fn one_that_grows_without_bound_ends_the_run_by_its_name() {
 }
 
 #[test]
+fn one_that_loses_its_value_ends_the_run_by_the_operation() {
+    // the first by time alone, the second by its own state, the third by what it reads
+    let functions = [
+        ("SQRT(0.5-TIME)", "SQRT of -"),
+        ("-1/SQRT(DIF(1))", "SQRT of -"),
+        ("SQRT(DX(20,1)-0.2)", "SQRT of -"),
+        ("LOG(DIF(1)-TIME)", "LOG of -"),
+    ];
+    for (function, operation) in functions {
+        let text = oscillator(2.0, &format!("DIFF/1, IC=1, FUNCTION={function}\n"));
+        for method in METHODS {
+            let mut s = session_by(&text, &["DIF(1)"], method, 1e-6);
+            try_to(&mut s, Analysis::Dynamic, 2.0, 20);
+            let record = &s.run.record;
+            let what = format!("{function} by {method}: {}", record.stop_reason);
+            assert_eq!(record.stop_code, "no_finite_value", "{what}");
+            let named = ["DIFF/1 FUNCTION", operation];
+            assert!(
+                named.iter().all(|n| record.stop_reason.contains(n)),
+                "{what}"
+            );
+        }
+    }
+}
+
+#[test]
 fn errors_lie_within_their_bars() {
     let (omega, k) = (7.0, 20.0);
     let text = oscillator(

@@ -175,7 +175,11 @@ impl Session {
                 away: *away,
                 fed_by: growth::fed_by(system, trajectory.rows.last().unwrap_or(&system.numbers)),
             },
-            Ended::Downstream(stop) => downstream(system, stop),
+            Ended::Downstream {
+                stop,
+                stands,
+                rates,
+            } => downstream(system, stop, (stands, rates)),
             Ended::Stop(stop) => {
                 let stands = trajectory.rows.last().unwrap_or(&system.numbers);
                 explained(system, stop, stands)
@@ -228,7 +232,7 @@ pub(super) fn counts(stats: &crate::numeric::Stats, limited: Limited) -> Counts 
 fn explained(system: &System, stop: &Stop, stands: &[f64]) -> StopReason {
     let (scene, at) = (system.configured(), stop.t);
     let may_lack_a_value = !matches!(stop.reason, Reason::TooManySteps | Reason::Projection(_));
-    if may_lack_a_value && let Some(lost) = valueless::find(scene, stands) {
+    if may_lack_a_value && let Some(lost) = valueless::find(scene, stands, &[]) {
         return StopReason::Function { at, lost };
     }
     let may_be_locked = !matches!(stop.reason, Reason::TooManySteps | Reason::Singular(_));
@@ -244,9 +248,14 @@ fn explained(system: &System, stop: &Stop, stands: &[f64]) -> StopReason {
     }
 }
 
-/// Why states downstream of the mechanism could not go on.
-fn downstream(system: &System, stop: &Stop) -> StopReason {
+/// Why states downstream of the mechanism, where all numbers and their rates are these, could not go
+/// on.
+fn downstream(system: &System, stop: &Stop, (stands, rates): (&[f64], &[f64])) -> StopReason {
     let scene = system.configured();
+    let may_lack_a_value = !matches!(stop.reason, Reason::TooManySteps);
+    if may_lack_a_value && let Some(lost) = valueless::find(scene, stands, rates) {
+        return StopReason::Function { at: stop.t, lost };
+    }
     let names = scene.downstream().iter().map(ToString::to_string);
     let (cause, worst) = cause_among(system, stop.reason, names.collect());
     StopReason::Method {

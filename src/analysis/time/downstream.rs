@@ -120,6 +120,14 @@ impl Ode for Beside<'_> {
     }
 }
 
+/// Why they go no further.
+enum Halt {
+    /// the caller asked
+    Interrupted,
+    /// their method could not go on
+    Stop(Stop),
+}
+
 /// A method for them, whatever step they are within.
 type Own = Box<dyn for<'a> Method<Beside<'a>>>;
 
@@ -207,9 +215,34 @@ impl Downstream {
             readings: &mut readings,
         };
         let mut found = Vec::with_capacity(times.len());
-        let outcome = self.follow_within(&mut beside, step, times, (watch, &mut found));
+        let halted = self.follow_within(&mut beside, step, times, (watch, &mut found));
+        let outcome = halted.map_err(|halt| match halt {
+            Halt::Interrupted => Ended::Interrupted,
+            Halt::Stop(stop) => Ended::Downstream {
+                stop,
+                stands: self.stands(&mut beside),
+                rates: self.method.ydot().to_vec(),
+            },
+        });
         self.readings = readings;
         (found, outcome)
+    }
+
+    /// Returns all numbers where these states stand: those of the mechanism as far as they are known.
+    fn stands(&self, beside: &mut Beside<'_>) -> Vec<f64> {
+        let Beside {
+            system, mechanism, ..
+        } = beside;
+        let t = self.method.t();
+        let mut y = mechanism.y().to_vec();
+        if t < mechanism.t() && mechanism.interpolate(system, t, &mut y).is_err() {
+            y.copy_from_slice(mechanism.y());
+        }
+        let mut numbers = system.numbers.clone();
+        let layout = system.scene.layout;
+        layout.set_state(&mut numbers, t, &y);
+        numbers[layout.downstream()].copy_from_slice(self.method.y());
+        numbers
     }
 
     fn follow_within(
@@ -218,7 +251,7 @@ impl Downstream {
         step: &Step,
         times: &[f64],
         (watch, found): (&mut dyn Watch, &mut Vec<Vec<f64>>),
-    ) -> Result<(), Ended> {
+    ) -> Result<(), Halt> {
         self.begin(beside, step.t0)?;
         for &t in times {
             let t = t.min(step.t1);
@@ -228,7 +261,7 @@ impl Downstream {
                 x.copy_from_slice(&self.x);
             } else if let Err(failure) = self.method.interpolate(beside, t, &mut x) {
                 let (reason, t, h) = (Reason::Evaluation(failure), self.method.t(), 0.0);
-                return Err(Ended::Downstream(Stop { reason, t, h }));
+                return Err(Halt::Stop(Stop { reason, t, h }));
             }
             found.push(x);
         }
@@ -238,18 +271,18 @@ impl Downstream {
     }
 
     /// Begins, or begins anew, where a step of the mechanism does.
-    fn begin(&mut self, beside: &mut Beside<'_>, t0: f64) -> Result<(), Ended> {
+    fn begin(&mut self, beside: &mut Beside<'_>, t0: f64) -> Result<(), Halt> {
         if !self.has_begun {
             if self.is_stiff_at(beside, t0) {
                 self.method = Box::new(Radau::new(self.x.len(), &self.settings));
                 self.is_explicit = false;
             }
             let begun = self.method.start(beside, t0, &self.x);
-            begun.map_err(Ended::Downstream)?;
+            begun.map_err(Halt::Stop)?;
             self.has_begun = true;
         } else if self.anew || self.method.t() != t0 {
             let begun = self.method.reinitialize(beside, t0, &self.x);
-            begun.map_err(Ended::Downstream)?;
+            begun.map_err(Halt::Stop)?;
         }
         self.anew = false;
         Ok(())
@@ -273,10 +306,10 @@ impl Downstream {
         t: f64,
         t1: f64,
         watch: &mut dyn Watch,
-    ) -> Result<(), Ended> {
+    ) -> Result<(), Halt> {
         while self.method.t() < t {
             if watch.interrupted() {
-                return Err(Ended::Interrupted);
+                return Err(Halt::Interrupted);
             }
             let now = self.method.t();
             if self.is_explicit && self.method.stiff() {
@@ -286,19 +319,19 @@ impl Downstream {
                 self.is_explicit = false;
                 self.progressed = (0, now);
                 let begun = self.method.start(beside, now, &self.x);
-                begun.map_err(Ended::Downstream)?;
+                begun.map_err(Halt::Stop)?;
             }
             let passed = self.landings.partition_point(|&l| l <= now);
             let limit = self.landings.get(passed).map_or(t1, |&l| l.min(t1));
             let taken = self.method.step(beside, limit);
-            taken.map_err(Ended::Downstream)?;
+            taken.map_err(Halt::Stop)?;
             self.check()?;
         }
         Ok(())
     }
 
     /// Ends a run that comes no further.
-    fn check(&mut self) -> Result<(), Ended> {
+    fn check(&mut self) -> Result<(), Halt> {
         let (stats, t) = (self.method.stats(), self.method.t());
         let attempted = stats.steps + stats.rejected;
         if t - self.progressed.1 >= STALLED_PART * self.duration {
@@ -307,7 +340,7 @@ impl Downstream {
             let rates = self.method.ydot().iter().enumerate();
             let fastest = rates.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
             let reason = Reason::Stalled(fastest.map_or(0, |(k, _)| k));
-            return Err(Ended::Downstream(Stop { reason, t, h: 0.0 }));
+            return Err(Halt::Stop(Stop { reason, t, h: 0.0 }));
         }
         Ok(())
     }

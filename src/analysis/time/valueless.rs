@@ -72,15 +72,17 @@ impl fmt::Display for Valueless {
 }
 
 /// Finds the function that has no value at the numbers of the last state or just after it; `None`:
-/// all have values that stay bounded.
-pub fn find(scene: Configured<'_>, numbers: &[f64]) -> Option<Valueless> {
-    let rates = Equations::new(scene, numbers).rates();
+/// all have values that stay bounded. States downstream of the mechanism have the rates that are
+/// given, or none.
+pub fn find(scene: Configured<'_>, numbers: &[f64], downstream: &[f64]) -> Option<Valueless> {
+    let mut rates = Equations::new(scene, numbers).rates();
+    rates.extend(downstream);
     let unit = numbers[Layout::TIME].abs().max(1.0);
     let then = |later: f64| {
         let dt = later * unit;
         let mut then = numbers.to_vec();
         then[Layout::TIME] += dt;
-        for (y, rate) in then[scene.layout.y()].iter_mut().zip(&rates) {
+        for (y, rate) in then[scene.layout.states()].iter_mut().zip(&rates) {
             *y += if rate.is_finite() { rate * dt } else { 0.0 };
         }
         then
