@@ -1,4 +1,4 @@
-//! What is doubted in a dataset, as a run tells it before it begins: a line each, with its place.
+//! Doubts about a dataset, as a run tells them before it begins: a line each, with its place.
 
 use super::remark;
 use super::run::Job;

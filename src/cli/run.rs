@@ -384,7 +384,7 @@ pub(super) struct Job {
 }
 
 impl Job {
-    /// Whether commands change the model, or what is active in it.
+    /// Returns whether commands change the model, or what is active in it.
     pub fn changes_the_model(&self) -> bool {
         let changes = |s: &Step| matches!(s.command, Command::Change(_) | Command::Activate { .. });
         self.steps.iter().any(changes)

@@ -329,6 +329,18 @@ with D, the function language does not:
     5 ! *2         is 5 with a comment, and nothing is said",
     },
     Code {
+        name: "rate_of_another",
+        summary: "IMPACT or BISTOP is damped by a rate that is not that of its distance (a warning)",
+        explanation: "\
+The second argument of IMPACT and BISTOP is the rate of the first. With the velocity of another marker, or along another
+axis, the contact damps what does not touch, and may feed energy into what does.
+
+    IMPACT(DZ(20,10), VZ(30,10), …)      the rate of DZ(20,10) is VZ(20,10)
+    IMPACT(DM(2,1), VX(2,1), …)          the rate of DM(2,1) is VR(2,1)
+
+Nothing is said where one of the two is a sum of several measures, or comes from a VARIABLE.",
+    },
+    Code {
         name: "angles_of_several_axes",
         summary: "AX, AY or AZ of the same markers stand in one expression (a warning)",
         explanation: "\

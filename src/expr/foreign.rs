@@ -144,7 +144,7 @@ pub(super) const UNITS: &[&str] = &[
     "nmm",
 ];
 /// Words for degrees behind a number.
-pub(super) const DEGREES: &[&str] = &["deg", "degs", "degree", "degrees"];
+pub(super) const DEGREES: &[&str] = &["d", "deg", "degs", "degree", "degrees"];
 /// Words for radians behind a number.
 pub(super) const RADIANS: &[&str] = &["rad", "rads", "radian", "radians"];
 

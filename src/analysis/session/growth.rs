@@ -7,11 +7,15 @@
 //! K₄ > 10⁶ E₁         beyond all energy that there was in the first quarter
 //! ```
 //!
+//! Where the run stops before its end, it is enough that the kinetic energy there is beyond 10⁶
+//! times all energy at the looks before: some motions reach infinity in a finite time.
+//!
 //! A body that falls or is driven grows as a power of time: from one quarter to the next by 16 at
 //! most if its speed does as t². The force that feeds it has the largest power in the end, springs
 //! aside: with all velocities reversed their power is the opposite.
 
 use crate::analysis::system::System;
+use crate::analysis::warning::Within;
 use crate::model::ElementId;
 use crate::scene::equations::Equations;
 use crate::scene::forces::ForceElement;
@@ -71,15 +75,33 @@ impl Looks {
     }
 
     /// Returns how the motion of a simulation grows, if it does so without bound; without forces it
-    /// does not.
-    pub fn growth(&self, system: &System) -> Option<Growth> {
+    /// does not. `stops`: it could not go on.
+    pub fn growth(&self, system: &System, stops: bool) -> Option<Growth> {
         if system.scene.forces.is_empty() {
             return None;
         }
         let (first, last) = (self.rows.first()?, &self.last);
         let looked = || self.rows.iter().chain([last]).map(Vec::as_slice);
         let speeds_grow = speeds_grow(&system.scene.layout, looked(), [first, last]);
-        speeds_grow.then(|| of(system, looked(), [first, last]))?
+        let grown = speeds_grow.then(|| of(system, looked(), [first, last]));
+        (grown.flatten()).or_else(|| stops.then(|| self.burst(system))?)
+    }
+
+    /// Returns how the energy has grown since the last look, if it is beyond all that there was.
+    fn burst(&self, system: &System) -> Option<Growth> {
+        let scene = system.configured();
+        let energy = |row: &[f64]| Equations::new(scene, row).energy();
+        let all = self.rows.iter().filter(|row| **row != self.last);
+        let before = all.fold(0.0_f64, |most, row| {
+            let [kinetic, potential] = energy(row);
+            most.max(kinetic).max(potential.abs())
+        });
+        let [kinetic, _] = energy(&self.last);
+        (before > 0.0 && kinetic > BEYOND_ALL * before).then(|| Growth {
+            factor: kinetic / before,
+            within: Within::Moments,
+            fed_by: fed_by(system, &self.last),
+        })
     }
 }
 
@@ -116,8 +138,10 @@ fn speeds_grow<'a>(
 /// A motion that grows without bound.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Growth {
-    /// largest kinetic energy in the end over all energy in the first quarter
+    /// largest kinetic energy in the end over all energy before
     pub factor: f64,
+    /// how long before
+    pub within: Within,
     /// the force that feeds it in the end
     pub fed_by: Option<ElementId>,
 }
@@ -145,6 +169,7 @@ fn of<'a>(
     }
     Some(Growth {
         factor: largest[3] / energy,
+        within: Within::Quarters,
         fed_by: fed_by(system, last),
     })
 }

@@ -248,8 +248,8 @@ fn explained(system: &System, stop: &Stop, stands: &[f64]) -> StopReason {
     }
 }
 
-/// Why states downstream of the mechanism, where all numbers and their rates are these, could not go
-/// on.
+/// Why states downstream of the mechanism could not go on where all numbers and their own rates are
+/// these.
 fn downstream(system: &System, stop: &Stop, (stands, rates): (&[f64], &[f64])) -> StopReason {
     let scene = system.configured();
     let may_lack_a_value = !matches!(stop.reason, Reason::TooManySteps);

@@ -73,7 +73,8 @@ impl Session {
         self.last = Integrated::of(kind, &trajectory, settings.error, span);
         let last = trajectory.rows.last().cloned();
         if !matches!(stopped, Some(StopReason::RunsAway { .. })) {
-            self.warn_of_growth(seen.looks.growth(system));
+            let stops = matches!(stopped, Some(StopReason::Method { .. }));
+            self.warn_of_growth(seen.looks.growth(system, stops));
         }
         if seen.swings.exceed(settings.error) {
             self.warn_of_energy(system, &seen, (&trajectory, settings.error));
@@ -244,8 +245,17 @@ impl Session {
 
     /// Warns where the motion grows without bound.
     fn warn_of_growth(&mut self, growth: Option<Growth>) {
-        if let Some(Growth { factor, fed_by }) = growth {
-            self.warn(RunWarning::EnergyGrows { factor, fed_by });
+        if let Some(Growth {
+            factor,
+            within,
+            fed_by,
+        }) = growth
+        {
+            self.warn(RunWarning::EnergyGrows {
+                factor,
+                within,
+                fed_by,
+            });
         }
     }
 

@@ -228,7 +228,7 @@ impl Downstream {
         (found, outcome)
     }
 
-    /// Returns all numbers where these states stand: those of the mechanism as far as they are known.
+    /// Returns all numbers where these states stand, those of the mechanism as far as it is known.
     fn stands(&self, beside: &mut Beside<'_>) -> Vec<f64> {
         let Beside {
             system, mechanism, ..

@@ -193,12 +193,12 @@ impl Slopes {
     }
 }
 
-/// Whether an input changes as a body moves: constants, TIME and MODE do not.
+/// Returns whether an input changes as a body moves: constants, TIME and MODE do not.
 fn moves(input: Input) -> bool {
     !matches!(input, Input::Time | Input::Mode)
 }
 
-/// Whether an input may change with the velocity of a body.
+/// Returns whether an input may change with the velocity of a body.
 fn has_rate(input: Input) -> bool {
     match input {
         Input::Measure(measure, _) => measure.row().family != measures::Family::Displacement,

@@ -17,7 +17,7 @@ mod verification;
 
 pub use assembly::AssemblyWarning;
 pub use condition::ConditionWarning;
-pub use run::{RunWarning, jumps};
+pub use run::{RunWarning, Within, jumps};
 pub use verification::VerificationWarning;
 
 use crate::diagnostic::{Diagnostic, Subject};

@@ -105,9 +105,11 @@ pub enum RunWarning {
     },
     /// the motion grows without bound
     EnergyGrows {
-        /// energy in the end over that of the first quarter
+        /// energy in the end over that before
         factor: f64,
-        /// the force with the largest power
+        /// how long before
+        within: Within,
+        /// the force that feeds it
         fed_by: Option<ElementId>,
     },
     /// the balance of energy does not close
@@ -150,6 +152,15 @@ pub enum RunWarning {
         /// its request
         request: f64,
     },
+}
+
+/// The time in which an energy has grown beyond all bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Within {
+    /// from each quarter of the run to the next
+    Quarters,
+    /// just before the run had to stop
+    Moments,
 }
 
 impl RunWarning {
@@ -270,15 +281,13 @@ impl RunWarning {
                 below,
                 steps,
             } => in_vain(*error, *below, *steps),
-            RunWarning::RoundingAddsUp { error, reached } => format!(
-                "an error of {error} is below rounding: that of the accelerations alone adds up to \
-                 about {reached:.0e} of the largest velocities"
-            ),
-            RunWarning::CompanionEnded { request } => format!(
-                "a run at an error of {request:.1e} ends otherwise than this one: bars of error hold as \
-                 far as both go"
-            ),
-            RunWarning::EnergyGrows { factor, fed_by } => growth(*factor, fed_by.is_some()),
+            RunWarning::RoundingAddsUp { error, reached } => rounding_adds_up(*error, *reached),
+            RunWarning::CompanionEnded { request } => companion_ended(*request),
+            RunWarning::EnergyGrows {
+                factor,
+                within,
+                fed_by,
+            } => growth(*factor, *within, fed_by.is_some()),
             RunWarning::EnergyUnsure { share } => energy(*share),
             RunWarning::PhaseUnsure { swings, off } => phase(*swings, *off),
             RunWarning::ErrorsAddUp { swings, requests } => errors_add_up(*swings, *requests),
@@ -290,6 +299,22 @@ impl RunWarning {
             RunWarning::StabilityLimited { limited, steps } => stiff(*limited, *steps),
         }
     }
+}
+
+/// Returns what rounding of the accelerations adds up to.
+fn rounding_adds_up(error: f64, reached: f64) -> String {
+    format!(
+        "an error of {error} is below rounding: that of the accelerations alone adds up to about \
+         {reached:.0e} of the largest velocities"
+    )
+}
+
+/// Returns how far bars of error hold where the run at another request ended otherwise.
+fn companion_ended(request: f64) -> String {
+    format!(
+        "a run at an error of {request:.1e} ends otherwise than this one: bars of error hold as far \
+         as both go"
+    )
 }
 
 /// Returns in how many of all steps stability kept an explicit method short.
@@ -359,8 +384,12 @@ fn in_vain(error: f64, below: usize, steps: usize) -> String {
 }
 
 /// Returns by how much the energy of a motion grows; `fed`: the force before it feeds the motion.
-fn growth(factor: f64, fed: bool) -> String {
-    let energy = format!("its energy is {factor:.1e} times that of the first quarter of the run");
+fn growth(factor: f64, within: Within, fed: bool) -> String {
+    let before = match within {
+        Within::Quarters => "that of the first quarter of the run",
+        Within::Moments => "all that there was moments before",
+    };
+    let energy = format!("its energy is {factor:.1e} times {before}");
     if fed {
         format!(
             " feeds a motion that grows without bound: {energy}; are the signs of its stiffness and its damping right?"

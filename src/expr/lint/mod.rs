@@ -128,6 +128,15 @@ mod tests {
     fn what_is_hardly_meant_is_doubted() {
         for (code, texts) in [
             (
+                "rate_of_another",
+                &[
+                    "IMPACT(DZ(2,1),VZ(3,1),1,10,1,1,1)",
+                    "IMPACT(DZ(2,1)-STEP(TIME,0,0,1,1),-VX(2,1),1,10,1,1,1)",
+                    "BISTOP(DM(2,1),VX(2,1),1,2,10,1,1,1)",
+                    "IMPACT(AZ(2,1),WZ(2,3),1,10,1,1,1)",
+                ][..],
+            ),
+            (
                 "degrees_or_radians",
                 &[
                     "SIN(30)",
@@ -182,6 +191,12 @@ mod tests {
     fn what_is_meant_is_not_doubted() {
         for text in [
             "SIN(30D)",
+            "IMPACT(DX(3,4,4),VX(3,4,4),.25,1.5,1.5,0,.1)",
+            "IMPACT(-DX(1,2),-VX(2,1),1,10,1,1,1)",
+            "IMPACT(DM(2,1),VR(2,1),1,10,1,1,1)",
+            "IMPACT(DX(2,1)+DX(3,1),VX(2,1),1,10,1,1,1)",
+            "IMPACT(VARVAL(1),VARVAL(2),1,10,1,1,1)",
+            "IMPACT(DZ(2,1),0,1,10,1,1,1)",
             "SIN(360D*TIME)",
             "SIN(2*PI*TIME)",
             "SIN(10*TIME)",

@@ -15,6 +15,8 @@ const GRAVITY_IN_DOUBT: [f64; 2] = [1e-4, 30.0];
 const SAME_GRAVITY: f64 = 0.02;
 /// Radius of gyration that is doubted, at least, relative to the size of the mechanism.
 const WIDE_GYRATION: f64 = 20.0;
+/// Radius of a pin or a ball that is doubted, at least, relative to the size of the mechanism.
+const WIDE_PIN: f64 = 3.0;
 /// Radius of gyration that is doubted, at most, relative to the distance of the part's markers from
 /// its centre of mass: moments in kg m² among millimetres are a thousandth too small.
 const NARROW_GYRATION: f64 = 1.5e-3;
@@ -310,6 +312,37 @@ fn short(x: f64) -> String {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
         text
+    }
+}
+
+/// Pins and balls of FRICTION are not far larger than the mechanism.
+pub(super) fn friction_has_the_size_of_joints(model: &Model, out: &mut Out) {
+    let frictions: Vec<_> = model
+        .active(ElementKind::Friction, &model.frictions)
+        .collect();
+    if frictions.is_empty() {
+        return;
+    }
+    let size = extent(model);
+    let unit = model.units.as_ref().map_or("", |u| u.length.as_str());
+    for (id, friction) in frictions {
+        let radii = [
+            ("PIN_RADIUS", friction.pin_radius),
+            ("BALL_RADIUS", friction.ball_radius),
+        ];
+        for (argument, radius) in radii {
+            let Some(radius) = radius.filter(|r| size > 0.0 && *r > WIDE_PIN * size) else {
+                continue;
+            };
+            let message = format!(
+                "{argument} is {} {unit}, in a mechanism of {}",
+                short(radius),
+                short(size)
+            );
+            let who = (ElementKind::Friction.id(id), &friction.place);
+            warn(out, "unlikely_magnitude", who, message);
+            at_argument(out, argument);
+        }
     }
 }
 

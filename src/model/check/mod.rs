@@ -41,6 +41,7 @@ const ONLY_WARN: &[&str] = &[
     "inertia fits its part",
     "springs have their length",
     "beams have their length",
+    "friction has the size of joints",
     "stiffness can be resolved",
 ];
 
@@ -106,6 +107,10 @@ pub const RULES: &[Rule] = &[
     (
         "beams have their length",
         magnitudes::beams_have_their_length,
+    ),
+    (
+        "friction has the size of joints",
+        magnitudes::friction_has_the_size_of_joints,
     ),
     ("errors are small", magnitudes::errors_are_small),
     (
