@@ -117,8 +117,11 @@ falls for ever; a spring or a stop in that direction gives it a place to rest.
         summary: "the equilibrium that was found would be left after the smallest push",
         explanation: "\
 All loads balance, but in some directions a push is not answered by a force back: a pendulum on its head.
+Or it is, and grows all the same: a load that follows what it pushes, a damper whose sign is turned, a control whose
+state acts back feed a swing. Then the eigenvalues of `cognate linear --static` decide, and the fastest growth is told.
 
-    PART/2, QG=0,-100,0, …               start on the other side of the hinge",
+    PART/2, QG=0,-100,0, …               start on the other side of the hinge
+    SFORCE/1, …, FUNCTION=-2*VZ(3,4)     a damper that takes energy",
     },
     Code {
         name: "misaligned",
