@@ -103,7 +103,7 @@ fn a_motion_against_an_initial_condition_is_told() {
     for (ic, words) in [
         (
             "0.3, 2",
-            "JOINT/1 IC cannot be met: the constraints leave 5",
+            "JOINT/1 IC cannot be met: the constraints leave 0.5 instead of 0.3",
         ),
         (
             "0.5, 3",
@@ -118,6 +118,33 @@ fn a_motion_against_an_initial_condition_is_told() {
     }
     let (_, warnings) = start(&text("0.5, 2"), &["AZ(2,1)"], Analysis::Dynamic);
     assert!(warnings.iter().all(|w| !w.contains("IC")), "{warnings:?}");
+}
+
+#[test]
+fn velocities_that_are_rounding_beside_those_of_the_mechanism_are_not_told() {
+    // a part held to ground has no velocity; programs write some all the same
+    for size in [1e-3, 1.0, 1e3] {
+        for speed in [0.0, 1.0, 1e4_f64] {
+            for (share, told) in [(2e-16, false), (1e-14, false), (1e-6, true), (1.0, true)] {
+                let (v, w) = (share * size * speed.max(1.0), share * speed.max(1.0));
+                let text = format!(
+                    "PART/2, MASS=1, CM=2, IP=1,1,1, VX={v:e}, VY=-{v:e}, WZ={w:e}\nMARKER/2, PART=2\nJOINT/1, FIXED, I=2, J=1\n\
+                     MARKER/3, PART=1, QP={size},0,0\nPART/3, MASS=1, CM=4, IP=1,1,1, QG={size},0,0, WZ={speed}\nMARKER/4, PART=3\n\
+                     JOINT/2, REVOLUTE, I=4, J=3\n"
+                );
+                let (_, warnings) = start(&text, &["AZ(2,1)"], Analysis::Dynamic);
+                let number = warnings
+                    .iter()
+                    .filter(|w| w.contains("cannot be met"))
+                    .count();
+                assert_eq!(
+                    number,
+                    if told { 3 } else { 0 },
+                    "{size} {speed} {share}: {warnings:?}"
+                );
+            }
+        }
+    }
 }
 
 #[test]

@@ -190,7 +190,7 @@ impl Session {
             Judged::Decays if directions > 0 => return "stable by forces of velocity".into(),
             _ if directions > 0 => self.warn(RunWarning::Unstable { at, directions }),
             Judged::ByStiffness | Judged::Decays => {}
-            Judged::Unjudged => return format!("{words} in stiffness, growth not judged"),
+            Judged::Unjudged => return format!("{}, growth not judged", in_stiffness(&words)),
             Judged::Grows(growth) => {
                 if !std::mem::replace(grew, true) {
                     self.warn(RunWarning::PushGrows {
@@ -199,11 +199,16 @@ impl Session {
                         unit: self.run.units.time.clone(),
                     });
                 }
-                return format!("{words} in stiffness, but a push grows");
+                return format!("{}, but a push grows", in_stiffness(&words));
             }
         }
         words
     }
+}
+
+/// Says of words on stability that they are those of stiffness alone.
+fn in_stiffness(words: &str) -> String {
+    words.replacen("stable", "stable in stiffness", 1)
 }
 
 /// The fate of a small push off an equilibrium.
