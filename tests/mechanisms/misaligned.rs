@@ -142,6 +142,31 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(config())]
+
+    /// A loop whose axis is tilted as a whole fits as it is drawn; it is a structure all the same, and refused with the amount, but
+    /// where the dataset says that every equation is meant.
+    #[test]
+    fn a_loop_that_fits_as_it_is_drawn_is_refused_or_meant(
+        joint in 0usize..4, tilt in 0.001f64..0.01, way in 0.0f64..6.2,
+        order in proptest::collection::vec(0u32..100, 19),
+        unit in prop_oneof![Just(1e-3), Just(1.0), Just(1e3)],
+    ) {
+        let mut misfits = [ALIGNED; 8];
+        let tilted = [tilt * way.cos(), tilt * way.sin(), 0.0, 0.0, 0.0];
+        (misfits[2 * joint], misfits[2 * joint + 1]) = (tilted, tilted);
+        let (freedom, went, said) = outcome(&four_bar(&misfits, unit, &order, ""), Analysis::Dynamic);
+        prop_assert_eq!(freedom, None);
+        prop_assert!(!went);
+        prop_assert!(said.iter().any(|s| s.contains("JOINT/") && s.contains("is off by")), "{:?}", said);
+        prop_assert!(said.iter().any(|s| s.contains("IC/ERROR=1E-12")), "{:?}", said);
+        let (freedom, went, said) = outcome(&four_bar(&misfits, unit, &order, "IC/ERROR=1E-12\n"), Analysis::Dynamic);
+        prop_assert_eq!(freedom, Some(0), "{:?}", said);
+        prop_assert!(went && said.iter().any(|s| s.contains("no part can move")), "{:?}", said);
+    }
+}
+
 /// Tilts of one axis from 1e-12 to 1e-2 rad: what runs has one freedom, and nothing runs that is tilted more than what is
 /// refused; likewise where the crank is driven and at rest.
 #[test]

@@ -281,8 +281,10 @@ RADAU5, BDF and HHT take steps as long as the slow motion permits; AUTO changes 
 Four parallel axes make a four-bar that moves; tilted by any angle, however small, they make a structure. Axes in files are rounded, so an
 equation that depends on others but for IC/ERROR (in rad, and as a part of the size of its loop; 1e-4 when nobody says) is left out, and
 told with how far it is off. One that is off by more and locks its loop is refused by name. Give the axes all their digits to be rid of it.
+Where a structure is meant that is close to one that moves, take every equation as it is.
 
-    IC/ERROR=1E-6",
+    IC/ERROR=1E-6
+    IC/ERROR=1E-12                       every equation counts as it is",
     },
     Code {
         name: "wrong_way_round",
