@@ -17,8 +17,8 @@
 //! `TOLERANCE`, is twenty times the rounding of six digits, as the errors of several markers add
 //! up in a loop; Adams finds redundant rows by pivots and needs no such number.
 //!
-//! A structure that fits as it is drawn may be close to one that moves, without being meant to move:
-//! of random structures one in four hundred has a row that is off by less than NEARLY_DEPENDENT, one
+//! A structure that fits as it is drawn may be close to one that moves, and not be meant to move:
+//! of random ones, one in four hundred has a row that is off by less than NEARLY_DEPENDENT, one
 //! in a thousand by less than SHAKY. It is known by the latter, and where IC/ERROR is so small that
 //! only rounding is left over: then every row counts as it is.
 //!
@@ -50,7 +50,7 @@ pub const NEARLY_DEPENDENT: f64 = 0.05;
 /// misalignment that is told.
 const SHAKY: f64 = 0.02;
 /// IC/ERROR up to which every row counts as it is.
-const AS_DRAWN: f64 = 1e-12;
+pub const AS_DRAWN: f64 = 1e-12;
 /// Value of an entry, scaled, below which it is rounding.
 const ROUNDING: f64 = 1e-13;
 /// Largest deviation (2) of a row that follows exactly: rounding, as rows are closed to 1e-13.
