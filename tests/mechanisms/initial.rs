@@ -289,9 +289,9 @@ fn velocities_of_the_dataset_are_zero_in_statics_and_come_back_afterwards() {
 
 #[test]
 fn a_motion_by_acceleration_begins_as_the_mechanism_does_where_that_is_close_to_a_structure() {
-    // two hinges whose axes are 3 mm apart: a structure, which is refused where nothing drives
+    // two hinges whose axes are 3 cm apart make a structure, whether something is driven elsewhere or not
     let door = "PART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2, QP=1,0,0.5\nMARKER/11, PART=1\nMARKER/44, PART=2\n\
-                MARKER/14, PART=1, QP=3E-3,0,1\nMARKER/22, PART=2, QP=3E-3,0,1\n\
+                MARKER/14, PART=1, QP=3E-2,0,1\nMARKER/22, PART=2, QP=3E-2,0,1\n\
                 JOINT/1, REVOLUTE, I=44, J=11\nJOINT/2, REVOLUTE, I=22, J=14\n";
     let crank = "PART/9, MASS=1, CM=90, IP=1,1,1, QG=5,0,0, WZ=2\nMARKER/90, PART=9\nMARKER/91, PART=1, QP=5,0,0\n\
                  JOINT/9, REVOLUTE, I=90, J=91\nMOTION/9, JOINT=9, ROTATION, ACCELERATION, FUNCTION=1\n";

@@ -314,3 +314,22 @@ fn what_cannot_move_is_told_truly() {
         "{fixed:?}"
     );
 }
+
+/// A motion elsewhere in the model changes nothing of what is said of a loop that it does not drive.
+#[test]
+fn a_drive_elsewhere_does_not_hide_what_is_locked() {
+    let elsewhere = "PART/9, MASS=1, CM=90, IP=1,1,1, QG=9,0,0\nMARKER/90, PART=9\nMARKER/91, PART=1, QP=9,0,0\n\
+                     JOINT/9, REVOLUTE, I=90, J=91\nMOTION/9, JOINT=9, ROTATION, FUNCTION=TIME\n";
+    for exponent in 2..=12 {
+        let mut misfits = [ALIGNED; 8];
+        let tilt = [0.7 * 10f64.powi(-exponent), 0.0, 0.0, 0.0, 0.0];
+        (misfits[6], misfits[7]) = (tilt, tilt);
+        for more in ["", elsewhere] {
+            for text in [four_bar(&misfits, 1.0, &[0], more), door(tilt[0], more)] {
+                let (freedom, went, said) = outcome(&text, Analysis::Dynamic);
+                assert_eq!(went, exponent > 3, "1e-{exponent}: {said:?}");
+                assert_eq!(freedom, went.then_some(1), "1e-{exponent}: {said:?}");
+            }
+        }
+    }
+}

@@ -6,7 +6,7 @@ use super::carried::{Carried, moved, placed};
 use super::state_at_start::Start;
 use crate::analysis::look::Look;
 use crate::analysis::start::velocities::{self, moving};
-use crate::analysis::start::{alignment, assemble, initial_conditions, placement};
+use crate::analysis::start::{assemble, initial_conditions, placement};
 use crate::analysis::system::closures;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Driven, ElementKind, Joint, Level, Model};
@@ -51,14 +51,7 @@ impl Session {
             let id = start.scene.motions[w.motion].id;
             free.inactive.insert(ElementKind::Motion.id(id));
         }
-        let mut found = self.moving_start(&free, start, look)?;
-        if found.is_none() {
-            // what a motion keeps from being taken for misaligned counts without it, too
-            let numbers = &mut free.initial_conditions.numbers;
-            numbers.insert("ERROR".into(), alignment::AS_DRAWN);
-            found = self.moving_start(&free, start, look)?;
-        }
-        let Some((there, v)) = found else {
+        let Some((there, v)) = self.moving_start(&free, start, look)? else {
             return Ok(());
         };
         let (here, q, x) = (there.here(), &there.q, &there.x);

@@ -40,7 +40,7 @@ use crate::scene::configuration::{Configuration, Configured, LooseRow};
 use crate::scene::equations::Equations;
 use crate::scene::mover::Mover;
 use crate::scene::programs::weights;
-use crate::scene::{LinkMotion, RowKind, Scene};
+use crate::scene::{LinkMotion, RowKind, Scene, Source};
 use crate::space::Vec3;
 
 /// Part that a row determines beyond others, in rad or parts of the size of its loop, above which
@@ -50,7 +50,7 @@ pub const NEARLY_DEPENDENT: f64 = 0.05;
 /// misalignment that is told.
 const SHAKY: f64 = 0.02;
 /// IC/ERROR up to which every row counts as it is.
-pub const AS_DRAWN: f64 = 1e-12;
+const AS_DRAWN: f64 = 1e-12;
 /// Value of an entry, scaled, below which it is rounding.
 const ROUNDING: f64 = 1e-13;
 /// Largest deviation (2) of a row that follows exactly: rounding, as rows are closed to 1e-13.
@@ -502,9 +502,7 @@ impl<'s> Search<'s> {
         q: &[f64],
         beyond: &[Misfit],
     ) -> Vec<Diagnostic> {
-        // a driven loop near its dead point has such rows, too: assembly and the run find those
-        // that cannot be satisfied
-        if beyond.is_empty() || !self.scene.motions.is_empty() {
+        if beyond.is_empty() {
             return Vec::new();
         }
         let rows = self.rows(configuration, q);
@@ -517,7 +515,9 @@ impl<'s> Search<'s> {
             let own: Vec<Misfit> = (beyond.iter().copied())
                 .filter(|m| order.contains(&m.row) && !is_meant(m))
                 .collect();
-            if own.is_empty() {
+            // a driven loop near its dead point has such rows, too: assembly and the run find those
+            // that cannot be satisfied
+            if own.is_empty() || self.is_driven(&block) {
                 continue;
             }
             let width = block.columns.len();
@@ -540,6 +540,25 @@ impl<'s> Search<'s> {
             }
         }
         self.errors(configuration, q, found)
+    }
+
+    /// Returns whether motions may have a say in a block: by a row of their own, by a coordinate on
+    /// the way around one of its loops, or by what ties displacements to theirs.
+    fn is_driven(&self, block: &Block) -> bool {
+        let scene = self.scene;
+        if scene.motions.is_empty() {
+            return false;
+        }
+        let driven: Vec<usize> = (scene.coordinates.iter())
+            .filter(|c| matches!(c.source, Source::Driven(_)))
+            .map(|c| c.link)
+            .collect();
+        block.rows.iter().any(|&r| match scene.rows[r].kind {
+            RowKind::Markers {
+                i, j, motion: None, ..
+            } => ways(scene, i, j).iter().any(|link| driven.contains(link)),
+            _ => true,
+        })
     }
 
     /// Writes an error of each element: its row that is off most.
@@ -613,14 +632,7 @@ fn loop_size(at: &Equations<'_, f64>, scene: &Scene, i: usize, j: usize) -> f64 
             LinkMotion::Turn { .. } | LinkMotion::Ball { .. }
         )
     };
-    // links stand behind those that carry them: the ways meet where both are the same
-    let (mut ends, mut between) = ([i, j].map(|m| scene.markers[m].link), Vec::new());
-    while ends[0] != ends[1] {
-        let outer = usize::from(ends[0] < ends[1]);
-        let Some(link) = ends[outer] else { break };
-        between.push(link);
-        ends[outer] = scene.links[link].parent;
-    }
+    let between = ways(scene, i, j);
     let links = between.iter().filter(|k| turns(k));
     let origins = links.map(|&k| at.links()[k].X_GL.position);
     let points = origins.chain([i, j].map(|m| at.marker(m).p_GM));
@@ -637,4 +649,17 @@ fn loop_size(at: &Equations<'_, f64>, scene: &Scene, i: usize, j: usize) -> f64 
     } else {
         scene.length
     }
+}
+
+/// Returns the links on the ways from markers I and J to what carries both.
+fn ways(scene: &Scene, i: usize, j: usize) -> Vec<usize> {
+    // links stand behind those that carry them: the ways meet where both are the same
+    let (mut ends, mut between) = ([i, j].map(|m| scene.markers[m].link), Vec::new());
+    while ends[0] != ends[1] {
+        let outer = usize::from(ends[0] < ends[1]);
+        let Some(link) = ends[outer] else { break };
+        between.push(link);
+        ends[outer] = scene.links[link].parent;
+    }
+    between
 }
