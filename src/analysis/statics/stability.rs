@@ -10,6 +10,7 @@
 
 use super::Settler;
 use super::point::Point;
+use crate::numeric::pattern::Pattern;
 use crate::numeric::rank::{Rank, TOLERANCE};
 use crate::scalar::Scalar;
 use crate::scene::programs::record_moving;
@@ -191,17 +192,19 @@ impl Settler<'_> {
         let scene = self.system.configured();
         let loads = record_moving(scene, |at| at.balance(&vec![Scalar::zero(); m]));
         let places = scene.layout.v();
-        let mut speeds = vec![Vec::new(); scene.layout.len()];
-        places.clone().for_each(|place| speeds[place].push(0));
-        self.system.depend_along(&mut speeds);
-        let follows = loads.dependence(&speeds);
+        let mut changed = vec![Vec::new(); scene.layout.len()];
+        (places.clone().enumerate()).for_each(|(k, place)| changed[place].push(k as u32));
+        self.system.depend_along(&mut changed);
+        let follows = loads.dependence(&changed);
         if follows.iter().all(|along| along.is_empty()) {
             return None;
         }
+        let pattern = Pattern::of_rows(n, &follows);
         let speeds: Vec<Direction> = places.map(|place| vec![(place, 1.0)]).collect();
         let all = p.numbers.iter().copied();
         let follow = |numbers: &mut [_], first| self.system.follow_along(numbers, first);
-        let slopes = along(&loads, &mut self.dual_work, all, &speeds, None, follow).ok();
+        let pattern = Some(&pattern);
+        let slopes = along(&loads, &mut self.dual_work, all, &speeds, pattern, follow).ok();
         // where nothing determines a loop, nothing is known of what takes energy
         Some(-slopes.unwrap_or_else(|| DMatrix::identity(n, n)))
     }
