@@ -28,6 +28,7 @@ mod delays;
 mod doors;
 mod downstream;
 mod energy;
+mod flutter;
 mod integrators;
 mod limits;
 mod linear;

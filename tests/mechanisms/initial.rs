@@ -103,7 +103,7 @@ fn a_motion_against_an_initial_condition_is_told() {
     for (ic, words) in [
         (
             "0.3, 2",
-            "JOINT/1 IC cannot be met: the constraints leave 5",
+            "JOINT/1 IC cannot be met: the constraints leave 0.5 instead of 0.3",
         ),
         (
             "0.5, 3",
@@ -118,6 +118,33 @@ fn a_motion_against_an_initial_condition_is_told() {
     }
     let (_, warnings) = start(&text("0.5, 2"), &["AZ(2,1)"], Analysis::Dynamic);
     assert!(warnings.iter().all(|w| !w.contains("IC")), "{warnings:?}");
+}
+
+#[test]
+fn velocities_that_are_rounding_beside_those_of_the_mechanism_are_not_told() {
+    // a part held to ground has no velocity; programs write some all the same
+    for size in [1e-3, 1.0, 1e3] {
+        for speed in [0.0, 1.0, 1e4_f64] {
+            for (share, told) in [(2e-16, false), (1e-14, false), (1e-6, true), (1.0, true)] {
+                let (v, w) = (share * size * speed.max(1.0), share * speed.max(1.0));
+                let text = format!(
+                    "PART/2, MASS=1, CM=2, IP=1,1,1, VX={v:e}, VY=-{v:e}, WZ={w:e}\nMARKER/2, PART=2\nJOINT/1, FIXED, I=2, J=1\n\
+                     MARKER/3, PART=1, QP={size},0,0\nPART/3, MASS=1, CM=4, IP=1,1,1, QG={size},0,0, WZ={speed}\nMARKER/4, PART=3\n\
+                     JOINT/2, REVOLUTE, I=4, J=3\n"
+                );
+                let (_, warnings) = start(&text, &["AZ(2,1)"], Analysis::Dynamic);
+                let number = warnings
+                    .iter()
+                    .filter(|w| w.contains("cannot be met"))
+                    .count();
+                assert_eq!(
+                    number,
+                    if told { 3 } else { 0 },
+                    "{size} {speed} {share}: {warnings:?}"
+                );
+            }
+        }
+    }
 }
 
 #[test]
@@ -258,4 +285,18 @@ fn velocities_of_the_dataset_are_zero_in_statics_and_come_back_afterwards() {
     let x = last(&s, "DX(2,1)");
     let omega = 10f64.sqrt();
     assert!((x - (-2.0 + 2.0 / omega * omega.sin())).abs() < 1e-5, "{x}");
+}
+
+#[test]
+fn a_motion_by_acceleration_begins_as_the_mechanism_does_where_that_is_close_to_a_structure() {
+    // two hinges whose axes are 3 cm apart make a structure, whether something is driven elsewhere or not
+    let door = "PART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2, QP=1,0,0.5\nMARKER/11, PART=1\nMARKER/44, PART=2\n\
+                MARKER/14, PART=1, QP=3E-2,0,1\nMARKER/22, PART=2, QP=3E-2,0,1\n\
+                JOINT/1, REVOLUTE, I=44, J=11\nJOINT/2, REVOLUTE, I=22, J=14\n";
+    let crank = "PART/9, MASS=1, CM=90, IP=1,1,1, QG=5,0,0, WZ=2\nMARKER/90, PART=9\nMARKER/91, PART=1, QP=5,0,0\n\
+                 JOINT/9, REVOLUTE, I=90, J=91\nMOTION/9, JOINT=9, ROTATION, ACCELERATION, FUNCTION=1\n";
+    for text in [crank.to_string(), format!("{door}{crank}")] {
+        let (found, _) = start(&text, &["WZ(90,91)"], Analysis::Dynamic);
+        near(&found, &[2.0]);
+    }
 }

@@ -142,6 +142,31 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(config())]
+
+    /// A loop whose axis is tilted as a whole fits as it is drawn; it is a structure all the same, and refused with the amount, but
+    /// where the dataset says that every equation is meant.
+    #[test]
+    fn a_loop_that_fits_as_it_is_drawn_is_refused_or_meant(
+        joint in 0usize..4, tilt in 0.001f64..0.01, way in 0.0f64..6.2,
+        order in proptest::collection::vec(0u32..100, 19),
+        unit in prop_oneof![Just(1e-3), Just(1.0), Just(1e3)],
+    ) {
+        let mut misfits = [ALIGNED; 8];
+        let tilted = [tilt * way.cos(), tilt * way.sin(), 0.0, 0.0, 0.0];
+        (misfits[2 * joint], misfits[2 * joint + 1]) = (tilted, tilted);
+        let (freedom, went, said) = outcome(&four_bar(&misfits, unit, &order, ""), Analysis::Dynamic);
+        prop_assert_eq!(freedom, None);
+        prop_assert!(!went);
+        prop_assert!(said.iter().any(|s| s.contains("JOINT/") && s.contains("is off by")), "{:?}", said);
+        prop_assert!(said.iter().any(|s| s.contains("IC/ERROR=1E-12")), "{:?}", said);
+        let (freedom, went, said) = outcome(&four_bar(&misfits, unit, &order, "IC/ERROR=1E-12\n"), Analysis::Dynamic);
+        prop_assert_eq!(freedom, Some(0), "{:?}", said);
+        prop_assert!(went && said.iter().any(|s| s.contains("no part can move")), "{:?}", said);
+    }
+}
+
 /// Tilts of one axis from 1e-12 to 1e-2 rad: what runs has one freedom, and nothing runs that is tilted more than what is
 /// refused; likewise where the crank is driven and at rest.
 #[test]
@@ -288,4 +313,23 @@ fn what_cannot_move_is_told_truly() {
         fixed.iter().any(|s| s.contains("no part can move")),
         "{fixed:?}"
     );
+}
+
+/// A motion elsewhere in the model changes nothing of what is said of a loop that it does not drive.
+#[test]
+fn a_drive_elsewhere_does_not_hide_what_is_locked() {
+    let elsewhere = "PART/9, MASS=1, CM=90, IP=1,1,1, QG=9,0,0\nMARKER/90, PART=9\nMARKER/91, PART=1, QP=9,0,0\n\
+                     JOINT/9, REVOLUTE, I=90, J=91\nMOTION/9, JOINT=9, ROTATION, FUNCTION=TIME\n";
+    for exponent in 2..=12 {
+        let mut misfits = [ALIGNED; 8];
+        let tilt = [0.7 * 10f64.powi(-exponent), 0.0, 0.0, 0.0, 0.0];
+        (misfits[6], misfits[7]) = (tilt, tilt);
+        for more in ["", elsewhere] {
+            for text in [four_bar(&misfits, 1.0, &[0], more), door(tilt[0], more)] {
+                let (freedom, went, said) = outcome(&text, Analysis::Dynamic);
+                assert_eq!(went, exponent > 3, "1e-{exponent}: {said:?}");
+                assert_eq!(freedom, went.then_some(1), "1e-{exponent}: {said:?}");
+            }
+        }
+    }
 }

@@ -12,8 +12,11 @@
 //! added to its VARIABLE, so that whatever else the VARIABLE does goes on. Motions keep moving;
 //! about a state in which things move, A is that of the instant.
 
+mod growth;
 mod modes;
 mod write;
+
+pub(in crate::analysis) use growth::{Growth, growth};
 
 use crate::analysis::start::assemble;
 use crate::analysis::system::{System, complaints};
@@ -240,19 +243,8 @@ pub fn linearize(
     // the subspace, and the program of rates and outputs
     let small = Small::at(system)?;
     let watched = watched(&system.scene, &output_ids)?;
-    let program = record(system.configured(), |at| {
-        let mut out = at.rates();
-        out.extend(watched.iter().map(|&f| at.formula(f)));
-        out
-    })
-    .map_err(complaints)?;
-    // its derivatives along z and u
     let directions = directions(system, &small, &input_ids, wanted.no_damping);
-    let slopes = along(system, &program, &directions).map_err(|k| undetermined(system, k))?;
-    if slopes.iter().any(|x| !x.is_finite()) {
-        let what = "the equations have no finite derivatives in this state";
-        return Err(vec![Diagnostic::error("linear", what)]);
-    }
+    let slopes = slopes(system, &watched, &directions)?;
     // the matrices, and the modes
     let n_z = 2 * small.z.ncols() + system.scene.layout.n_x;
     let state = state_rows(system, &small, &slopes, wanted.no_damping);
@@ -275,6 +267,29 @@ pub fn linearize(
         a: rows(&a),
         modes,
     })
+}
+
+/// Returns the derivatives of rates and formulas along directions.
+///
+/// # Errors
+/// Functions that the equations cannot supply; those that are not finite.
+fn slopes(
+    system: &mut System,
+    watched: &[usize],
+    directions: &[Direction],
+) -> Result<DMatrix<f64>, Vec<Diagnostic>> {
+    let program = record(system.configured(), |at| {
+        let mut out = at.rates();
+        out.extend(watched.iter().map(|&f| at.formula(f)));
+        out
+    })
+    .map_err(complaints)?;
+    let slopes = along(system, &program, directions).map_err(|k| undetermined(system, k))?;
+    if slopes.iter().any(|x| !x.is_finite()) {
+        let what = "the equations have no finite derivatives in this state";
+        return Err(vec![Diagnostic::error("linear", what)]);
+    }
+    Ok(slopes)
 }
 
 /// Returns the formulas of VARIABLEs.

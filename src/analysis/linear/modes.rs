@@ -11,6 +11,7 @@ use crate::model::Model;
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
 use nalgebra::linalg::Schur;
+use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Inverse iterations: each takes away all but a rounding of the other modes.
@@ -29,15 +30,13 @@ pub(super) fn modes(
         return Ok(Vec::new());
     }
     let mut balanced = a.clone();
-    let scales = nalgebra::linalg::balancing::balance_parlett_reinsch(&mut balanced);
-    let schur =
-        Schur::try_new(balanced.clone(), f64::EPSILON, 100 * size.max(30)).ok_or_else(|| {
-            vec![Diagnostic::error(
-                "linear",
-                "the eigenvalues cannot be found: the iteration does not converge",
-            )]
-        })?;
-    let mut values: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
+    let scales = balance_parlett_reinsch(&mut balanced);
+    let mut values = eigenvalues(&balanced).ok_or_else(|| {
+        vec![Diagnostic::error(
+            "linear",
+            "the eigenvalues cannot be found: the iteration does not converge",
+        )]
+    })?;
     let norm = balanced.norm();
     for v in &mut values {
         // a real one that has been perturbed into a pair by less than rounding stays as it is
@@ -81,8 +80,16 @@ pub(super) fn modes(
     Ok(found)
 }
 
+/// Returns the eigenvalues of a balanced matrix, in no particular order; `None`: the iteration does
+/// not converge.
+pub(super) fn eigenvalues(balanced: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
+    let sweeps = 100 * balanced.nrows().max(30);
+    let schur = Schur::try_new(balanced.clone(), f64::EPSILON, sweeps)?;
+    Some(schur.complex_eigenvalues().iter().copied().collect())
+}
+
 /// Finds an eigenvector by inverse iteration, apart from those found before for the same value.
-fn eigenvector(
+pub(super) fn eigenvector(
     a: &DMatrix<f64>,
     value: Complex<f64>,
     norm: f64,

@@ -1,10 +1,11 @@
 //! A simulation at rest: one equilibrium, or one at each output time.
 
-use super::Session;
 use super::outcome::counts;
 use super::phase::Phase;
 use super::simulate::Span;
 use super::stop_reason::StopReason;
+use super::{LINEAR, Session};
+use crate::analysis::linear::{Growth, growth};
 use crate::analysis::statics::{self, Equilibrium, NoEquilibrium, Settings};
 use crate::analysis::system::System;
 use crate::analysis::trajectory::Limited;
@@ -20,6 +21,11 @@ use crate::scene::layout::Layout;
 const TURN_BETWEEN_EQUILIBRIA: f64 = 1.0;
 /// Most equilibria between two outputs.
 const MAX_EQUILIBRIA_BETWEEN: f64 = 1e4;
+/// Most unknowns of small motions whose eigenvalues are looked for: of a single equilibrium, which
+/// takes a second, and of each one in a row, which takes some ten milliseconds.
+const MAX_JUDGED_ALONE: usize = 240;
+/// See above.
+const MAX_JUDGED: usize = 60;
 
 /// The equilibria that were found, one after the other.
 #[derive(Default)]
@@ -31,6 +37,8 @@ struct Equilibria {
     stats: Stats,
     /// the method, and the stability of the last one
     method: String,
+    /// whether it has been told that a push grows
+    grew: bool,
     /// why the search ended before the last time
     failed: Option<StopReason>,
 }
@@ -117,11 +125,13 @@ impl Session {
                 iterations: found.iterations as u32,
                 imbalance: found.imbalance,
             });
-            let stability = found.stability.words();
-            if found.stability.unstable > 0 {
-                let directions = found.stability.unstable;
-                self.warn(RunWarning::Unstable { at: t, directions });
-            }
+            let most = if times.len() > 1 {
+                MAX_JUDGED
+            } else {
+                MAX_JUDGED_ALONE
+            };
+            let judged = self.judged(system, &found, most, watch);
+            let stability = self.told_of_stability(t, &found, judged, &mut all.grew);
             all.method = format!("EQUILIBRIUM, {stability}");
             let row = std::slice::from_ref(&system.numbers);
             self.more_rows(program, row);
@@ -131,6 +141,85 @@ impl Session {
         }
         all
     }
+}
+
+impl Session {
+    /// Judges by eigenvalues what becomes of a small push off the equilibrium in which a system is.
+    fn judged(
+        &mut self,
+        system: &System,
+        found: &Equilibrium,
+        most: usize,
+        watch: &mut dyn Watch,
+    ) -> Judged {
+        let (l, s) = (system.scene.layout, &found.stability);
+        let free = s.stable + s.neutral + s.unstable;
+        if found.is_passive || free == 0 {
+            return Judged::ByStiffness;
+        }
+        if 2 * free + l.n_x > most {
+            return Judged::Unjudged;
+        }
+        // as the model is about to move, which MODE, friction and what is held in statics change
+        let (before, seconds) = (self.carried.take(), self.run.record.seconds);
+        self.keep(system, system.numbers.clone());
+        if let Some(carried) = &mut self.carried {
+            carried.at_rest = true;
+        }
+        let moving = self.prepare(LINEAR, &[], watch);
+        self.carried = before;
+        self.run.record.seconds = seconds;
+        match moving.ok().and_then(|(mut moving, _)| growth(&mut moving)) {
+            None => Judged::Unjudged,
+            Some(None) => Judged::Decays,
+            Some(Some(growth)) => Judged::Grows(growth),
+        }
+    }
+
+    /// Warns of what becomes of a push off an equilibrium, growth once; returns it in words.
+    fn told_of_stability(
+        &mut self,
+        t: f64,
+        found: &Equilibrium,
+        judged: Judged,
+        grew: &mut bool,
+    ) -> String {
+        let (at, directions) = (t, found.stability.unstable);
+        let words = found.stability.words();
+        match judged {
+            Judged::Decays if directions > 0 => return "stable by forces of velocity".into(),
+            _ if directions > 0 => self.warn(RunWarning::Unstable { at, directions }),
+            Judged::ByStiffness | Judged::Decays => {}
+            Judged::Unjudged => return format!("{}, growth not judged", in_stiffness(&words)),
+            Judged::Grows(growth) => {
+                if !std::mem::replace(grew, true) {
+                    self.warn(RunWarning::PushGrows {
+                        at,
+                        growth: [growth.rate, growth.frequency],
+                        unit: self.run.units.time.clone(),
+                    });
+                }
+                return format!("{}, but a push grows", in_stiffness(&words));
+            }
+        }
+        words
+    }
+}
+
+/// Says of words on stability that they are those of stiffness alone.
+fn in_stiffness(words: &str) -> String {
+    words.replacen("stable", "stable in stiffness", 1)
+}
+
+/// The fate of a small push off an equilibrium.
+enum Judged {
+    /// as stiffness says
+    ByStiffness,
+    /// it does not grow
+    Decays,
+    Grows(Growth),
+    /// the model is too large, or has no eigenvalues there
+    Unjudged,
 }
 
 /// Finds the equilibrium at a time. Where turns are counted from one to the next, drives come there

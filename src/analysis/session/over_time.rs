@@ -46,6 +46,7 @@ impl Session {
         let settings = self.integration_of(system, kind, span);
         self.log_begin(kind, &settings);
         let first = system.numbers.clone();
+        let settles = self.settles(system);
         let chosen = system.configuration.active.clone();
         let mut seen = self.begin_rows(kind, program, (system, span.end));
         let (mut trajectory, seconds) =
@@ -79,7 +80,7 @@ impl Session {
         if seen.swings.exceed(settings.error) {
             self.warn_of_energy(system, &seen, (&trajectory, settings.error));
         }
-        if kind == Kind::Dynamic {
+        if kind == Kind::Dynamic && !settles {
             self.warn_of_small_motion(system, &seen, (&typical, settings.error));
         }
         self.warn_of_rounding((system, &seen), &trajectory, settings.error);
@@ -285,6 +286,15 @@ impl Session {
                 requests: added.requests,
             });
         }
+    }
+
+    /// Returns whether a system that begins is at rest in an equilibrium of statics, and nothing
+    /// drives it with time: what moves is what the permitted imbalance has left.
+    fn settles(&self, system: &System) -> bool {
+        let still = system.numbers[system.scene.layout.v()]
+            .iter()
+            .all(|v| *v == 0.0);
+        self.is_at_rest() && still && !system.reads_time()
     }
 
     /// Warns where all that moves is so small beside the model that permitted errors, which count

@@ -7,7 +7,7 @@
 //!          kept rows, here and nearby, and of Δ|g| over the way between                      (2)
 //! loose    off ≤ tolerance: left out, and told                                               (3)
 //! refused  tolerance < off ≤ NEARLY_DEPENDENT, and it takes the last freedom of its loops,
-//!          or its gap cannot be closed without                                               (4)
+//!          or its gap cannot be closed without; where it fits as it is drawn, off ≤ SHAKY    (4)
 //! sound    everything else: the row takes part as any other does                             (5)
 //! ```
 //!
@@ -16,6 +16,11 @@
 //! of a row's own loop, angles with one radian, and the tolerance is IC/ERROR. Its default here,
 //! `TOLERANCE`, is twenty times the rounding of six digits, as the errors of several markers add
 //! up in a loop; Adams finds redundant rows by pivots and needs no such number.
+//!
+//! A structure that fits as it is drawn may be close to one that moves, and not be meant to move:
+//! of random ones, one in four hundred has a row that is off by less than NEARLY_DEPENDENT, one
+//! in a thousand by less than SHAKY. It is known by the latter, and where IC/ERROR is so small that
+//! only rounding is left over: then every row counts as it is.
 //!
 //! A position where rows depend on each other in passing (a folded parallelogram) is no
 //! misalignment: (2) is measured nearby, too.
@@ -35,12 +40,17 @@ use crate::scene::configuration::{Configuration, Configured, LooseRow};
 use crate::scene::equations::Equations;
 use crate::scene::mover::Mover;
 use crate::scene::programs::weights;
-use crate::scene::{LinkMotion, RowKind, Scene};
+use crate::scene::{LinkMotion, RowKind, Scene, Source};
 use crate::space::Vec3;
 
 /// Part that a row determines beyond others, in rad or parts of the size of its loop, above which
 /// it is no misalignment.
 pub const NEARLY_DEPENDENT: f64 = 0.05;
+/// The same where a row fits as it is drawn, and the others leave no freedom: twice the largest
+/// misalignment that is told.
+const SHAKY: f64 = 0.02;
+/// IC/ERROR up to which every row counts as it is.
+const AS_DRAWN: f64 = 1e-12;
 /// Value of an entry, scaled, below which it is rounding.
 const ROUNDING: f64 = 1e-13;
 /// Largest deviation (2) of a row that follows exactly: rounding, as rows are closed to 1e-13.
@@ -78,6 +88,9 @@ pub(in crate::analysis) fn leave_out(
     look: Look<'_>,
 ) -> Result<(), Vec<Diagnostic>> {
     configuration.loose.clear();
+    if scene.alignment <= AS_DRAWN {
+        return Ok(());
+    }
     let Some(search) = Search::new(scene, configuration, t, q, x) else {
         return Ok(());
     };
@@ -489,9 +502,7 @@ impl<'s> Search<'s> {
         q: &[f64],
         beyond: &[Misfit],
     ) -> Vec<Diagnostic> {
-        // a driven loop near its dead point has such rows, too: assembly and the run find those
-        // that cannot be satisfied
-        if beyond.is_empty() || !self.scene.motions.is_empty() {
+        if beyond.is_empty() {
             return Vec::new();
         }
         let rows = self.rows(configuration, q);
@@ -500,10 +511,13 @@ impl<'s> Search<'s> {
         let mut found: Vec<Misfit> = Vec::new();
         for block in connected(&rows.gradients, self.unit.len()) {
             let order = self.candidates(&block);
+            let is_meant = |m: &Misfit| m.gap <= EXACT && m.off > SHAKY;
             let own: Vec<Misfit> = (beyond.iter().copied())
-                .filter(|m| order.contains(&m.row))
+                .filter(|m| order.contains(&m.row) && !is_meant(m))
                 .collect();
-            if own.is_empty() {
+            // a driven loop near its dead point has such rows, too: assembly and the run find those
+            // that cannot be satisfied
+            if own.is_empty() || self.is_driven(&block) {
                 continue;
             }
             let width = block.columns.len();
@@ -526,6 +540,25 @@ impl<'s> Search<'s> {
             }
         }
         self.errors(configuration, q, found)
+    }
+
+    /// Returns whether motions may have a say in a block: by a row of their own, by a coordinate on
+    /// the way around one of its loops, or by what ties displacements to theirs.
+    fn is_driven(&self, block: &Block) -> bool {
+        let scene = self.scene;
+        if scene.motions.is_empty() {
+            return false;
+        }
+        let driven: Vec<usize> = (scene.coordinates.iter())
+            .filter(|c| matches!(c.source, Source::Driven(_)))
+            .map(|c| c.link)
+            .collect();
+        block.rows.iter().any(|&r| match scene.rows[r].kind {
+            RowKind::Markers {
+                i, j, motion: None, ..
+            } => ways(scene, i, j).iter().any(|link| driven.contains(link)),
+            _ => true,
+        })
     }
 
     /// Writes an error of each element: its row that is off most.
@@ -560,7 +593,8 @@ impl<'s> Search<'s> {
                 row.equation
             );
             errors.push(Diagnostic::error(Cause::Assembly, message).element(row.element).help(
-                "align its markers with those of the other joints, or say by IC/ERROR what may be left over",
+                "align its markers with those of the other joints, or say by IC/ERROR what may be left over; \
+                 where it is meant to lock them, IC/ERROR=1E-12 takes every equation as it is",
             ));
         }
         errors
@@ -598,14 +632,7 @@ fn loop_size(at: &Equations<'_, f64>, scene: &Scene, i: usize, j: usize) -> f64 
             LinkMotion::Turn { .. } | LinkMotion::Ball { .. }
         )
     };
-    // links stand behind those that carry them: the ways meet where both are the same
-    let (mut ends, mut between) = ([i, j].map(|m| scene.markers[m].link), Vec::new());
-    while ends[0] != ends[1] {
-        let outer = usize::from(ends[0] < ends[1]);
-        let Some(link) = ends[outer] else { break };
-        between.push(link);
-        ends[outer] = scene.links[link].parent;
-    }
+    let between = ways(scene, i, j);
     let links = between.iter().filter(|k| turns(k));
     let origins = links.map(|&k| at.links()[k].X_GL.position);
     let points = origins.chain([i, j].map(|m| at.marker(m).p_GM));
@@ -622,4 +649,17 @@ fn loop_size(at: &Equations<'_, f64>, scene: &Scene, i: usize, j: usize) -> f64 
     } else {
         scene.length
     }
+}
+
+/// Returns the links on the ways from markers I and J to what carries both.
+fn ways(scene: &Scene, i: usize, j: usize) -> Vec<usize> {
+    // links stand behind those that carry them: the ways meet where both are the same
+    let (mut ends, mut between) = ([i, j].map(|m| scene.markers[m].link), Vec::new());
+    while ends[0] != ends[1] {
+        let outer = usize::from(ends[0] < ends[1]);
+        let Some(link) = ends[outer] else { break };
+        between.push(link);
+        ends[outer] = scene.links[link].parent;
+    }
+    between
 }

@@ -23,6 +23,8 @@ use nalgebra::{DMatrix, DVector};
 const MET_TOLERANCE: f64 = 1e-6;
 /// Part of a part's velocity by which it may be off and is met: it was typed with few digits.
 const TYPED_DIGITS: f64 = 1e-3;
+/// Part of the speeds of a mechanism below which a difference is rounding of what was written.
+const ROUNDING: f64 = 1e-12;
 
 /// Returns the error of motions that ask for a rate which a row forbids: by how much it would have
 /// to give way, and which motions there are.
@@ -148,22 +150,24 @@ pub fn unmet(
 ) -> Vec<ConditionWarning> {
     let numbers = numbers(scene, t, q, v, x);
     let at = Equations::new(scene, &numbers);
-    let told = joint_rates(&scene, model, &at);
-    let told = told.into_iter().filter_map(|(id, found, wanted)| {
+    let speeds = Speeds::of(&scene, model, &at);
+    let is_off = |found: f64, wanted: f64, is_angle: bool| {
         let off = (found - wanted).abs();
-        (off > MET_TOLERANCE * found.abs().max(wanted.abs())).then_some(
-            ConditionWarning::UnmetRate {
-                element: ElementKind::Joint.id(id),
-                found,
-                wanted,
-            },
-        )
+        off > MET_TOLERANCE * found.abs().max(wanted.abs()) && off > speeds.rounding(is_angle)
+    };
+    let told = joint_rates(&scene, model, &at);
+    let told = told.into_iter().filter_map(|rate| {
+        let JointRate {
+            id, found, wanted, ..
+        } = rate;
+        is_off(found, wanted, rate.is_angle).then_some(ConditionWarning::UnmetRate {
+            element: ElementKind::Joint.id(id),
+            found,
+            wanted,
+        })
     });
     let of_lines = line_rates(&scene, model, &at).into_iter();
-    let of_lines = of_lines.filter(|r| {
-        let (found, wanted) = (r.found, r.wanted);
-        (found - wanted).abs() > MET_TOLERANCE * found.abs().max(wanted.abs())
-    });
+    let of_lines = of_lines.filter(|r| is_off(r.found, r.wanted, r.is_angle));
     let of_lines = of_lines.map(|r| ConditionWarning::Unmet {
         element: r.element,
         argument: r.argument,
@@ -171,12 +175,17 @@ pub fn unmet(
         wanted: r.wanted,
     });
     told.chain(of_lines)
-        .chain(unmet_of_parts(&scene, model, &at))
+        .chain(unmet_of_parts(&scene, model, &at, &speeds))
         .collect()
 }
 
 /// Returns warnings of the parts whose velocity at the start is not the one that they are given.
-fn unmet_of_parts(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<ConditionWarning> {
+fn unmet_of_parts(
+    scene: &Scene,
+    model: &Model,
+    at: &Equations<'_, f64>,
+    speeds: &Speeds,
+) -> Vec<ConditionWarning> {
     const NAMES: [&str; 6] = ["VX", "VY", "VZ", "WX", "WY", "WZ"];
     let mut told = Vec::new();
     for part in &scene.parts {
@@ -187,8 +196,13 @@ fn unmet_of_parts(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<
             continue;
         };
         let given = data.velocity.iter().chain(&data.angular_velocity);
-        for ((argument, given), found) in NAMES.into_iter().zip(given).zip(v.into_iter().chain(w)) {
-            let unmet = given.filter(|wanted| (found - wanted).abs() > TYPED_DIGITS * wanted.abs());
+        let found = v.into_iter().chain(w);
+        for (k, (given, found)) in given.zip(found).enumerate() {
+            let argument = NAMES[k];
+            let rounding = speeds.rounding(k >= 3);
+            let unmet = given.filter(|wanted| {
+                (found - wanted).abs() > (TYPED_DIGITS * wanted.abs()).max(rounding)
+            });
             if let Some(wanted) = unmet.filter(|wanted| *wanted != 0.0) {
                 told.push(ConditionWarning::Unmet {
                     element: part.id,
@@ -200,6 +214,44 @@ fn unmet_of_parts(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<
         }
     }
     told
+}
+
+/// The largest speeds of a mechanism, found or asked for: against them rounding is told from a
+/// difference.
+struct Speeds {
+    /// of a point
+    way: f64,
+    /// of a rotation
+    turn: f64,
+}
+
+impl Speeds {
+    fn of(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Self {
+        // what takes more than 1e12 units of time to go through the mechanism is not seen in a run
+        let mut speeds = Self {
+            way: scene.size,
+            turn: 1.0,
+        };
+        for part in &scene.parts {
+            let Some(data) = model.body(part.id) else {
+                continue;
+            };
+            let [v, w] = components(scene, data, at).unwrap_or_default();
+            let given = data.velocity.iter().flatten();
+            let all = given.chain(v.iter());
+            speeds.way = all.fold(speeds.way, |most, x| most.max(x.abs()));
+            let given = data.angular_velocity.iter().flatten();
+            let all = given.chain(w.iter());
+            speeds.turn = all.fold(speeds.turn, |most, x| most.max(x.abs()));
+        }
+        speeds.way = speeds.way.max(speeds.turn * scene.size);
+        speeds
+    }
+
+    /// Returns what is rounding.
+    fn rounding(&self, is_angle: bool) -> f64 {
+        ROUNDING * if is_angle { self.turn } else { self.way }
+    }
 }
 
 /// Returns the velocity of a part's centre of mass in the axes of VM, and its angular velocity in
@@ -550,7 +602,10 @@ fn part_velocities(
             }
         }
     }
-    for (id, found, wanted) in joint_rates(scene, model, at) {
+    for JointRate {
+        id, found, wanted, ..
+    } in joint_rates(scene, model, at)
+    {
         let joint = &model.joints[&id];
         let link = |m: u32| scene.markers[*scene.marker_of.get(&m)?].link;
         values.push(found);
@@ -579,6 +634,7 @@ struct LineRate {
     link: LinkIx,
     found: f64,
     wanted: f64,
+    is_angle: bool,
 }
 
 /// Returns the rates that comment lines of ours give joints and markers.
@@ -597,7 +653,7 @@ fn line_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<Line
                         let state = |m: u32| Some(at.marker(*scene.marker_of.get(&m)?));
                         let (i, j) = (moving(&state(joint.i)?), moving(&state(joint.j)?));
                         let link = link_of(scene, joint.i).or_else(|| link_of(scene, joint.j));
-                        Some((gauge.value(&i, &j).first, link))
+                        Some((gauge.value(&i, &j).first, link, gauge.is_angle()))
                     })
                 }
                 InitialQuantity::Rate(k) => scene.marker_of.get(&id.number).map(|&m| {
@@ -606,16 +662,17 @@ fn line_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<Line
                         0..3 => state.v_GM.0[k],
                         _ => state.w_GM.0[k - 3],
                     };
-                    (rate, scene.markers[m].link)
+                    (rate, scene.markers[m].link, k >= 3)
                 }),
                 InitialQuantity::Variable(_) | InitialQuantity::Place(_) => None,
             };
-            all.extend(found.map(|(found, link)| LineRate {
+            all.extend(found.map(|(found, link, is_angle)| LineRate {
                 element: id,
                 argument: model.initial_quantity_name(id, quantity),
                 link,
                 found,
                 wanted,
+                is_angle,
             }));
         }
     }
@@ -637,8 +694,16 @@ pub(in crate::analysis) fn moving(m: &MarkerState<f64>) -> Frame<Jet> {
     }
 }
 
-/// Returns the joints of which an initial rate is asked: number, rate, and the one that is asked.
-fn joint_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<(u32, f64, f64)> {
+/// The rate of a joint, and the one that it is asked to begin with.
+struct JointRate {
+    id: u32,
+    found: f64,
+    wanted: f64,
+    is_angle: bool,
+}
+
+/// Returns the rates of the joints of which an initial rate is asked.
+fn joint_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<JointRate> {
     let mut found = Vec::new();
     for (id, gauge, [_, rate]) in of_joints(model) {
         let joint = &model.joints[&id];
@@ -653,7 +718,12 @@ fn joint_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<(u3
         } else {
             (i.v_GM - j.v_GM).dot(z) + (i.p_GM - j.p_GM).dot(j.w_GM.cross(z))
         };
-        found.push((id, own, rate));
+        found.push(JointRate {
+            id,
+            found: own,
+            wanted: rate,
+            is_angle: gauge.is_angle(),
+        });
     }
     found
 }

@@ -104,8 +104,11 @@ pub struct Equilibrium {
     pub iterations: usize,
     /// largest force or torque that is left
     pub imbalance: f64,
-    /// the answers to a push
+    /// the answers to a push, as stiffness gives them
     pub stability: Stability,
+    /// whether these decide what becomes of a push: loads have a potential, what depends on
+    /// velocities takes energy, and no state acts back
+    pub is_passive: bool,
 }
 
 /// The reason why there is no equilibrium.
@@ -240,27 +243,28 @@ impl<'a> Settler<'a> {
             self.keep(&p);
             outcome?;
             let stood = stood && iterations == 0;
-            let (stability, descent) = self.stability(&p, &jacobian);
-            let leave = stability.unstable > 0 && !stood && saddles < MAX_SADDLES;
-            match descent {
-                Some(descent) if leave => {
+            let answers = self.stability(&p, &jacobian);
+            let leave = answers.stability.unstable > 0 && !stood && saddles < MAX_SADDLES;
+            let pushed = answers
+                .descent
+                .as_ref()
+                .filter(|_| leave)
+                .and_then(|descent| {
                     saddles += 1;
                     let push = descent * (PUSH * self.settings.angle.min(1.0));
-                    match self.moved(&p, &push).and_then(|n| self.point(&n)) {
-                        Some(pushed) => p = pushed,
-                        None => return Ok(self.equilibrium(&p, iterations, stability)),
-                    }
+                    self.moved(&p, &push).and_then(|n| self.point(&n))
+                });
+            match pushed {
+                Some(pushed) => p = pushed,
+                None => {
+                    return Ok(Equilibrium {
+                        iterations,
+                        imbalance: p.force.amax(),
+                        stability: answers.stability,
+                        is_passive: self.is_passive(&p, &answers),
+                    });
                 }
-                _ => return Ok(self.equilibrium(&p, iterations, stability)),
             }
-        }
-    }
-
-    fn equilibrium(&self, p: &Point, iterations: usize, stability: Stability) -> Equilibrium {
-        Equilibrium {
-            iterations,
-            imbalance: p.force.amax(),
-            stability,
         }
     }
 

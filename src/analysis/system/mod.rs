@@ -50,6 +50,7 @@ use crate::scene::Scene;
 use crate::scene::broken::{Broken, broken};
 use crate::scene::configuration::{Configuration, Configured, Elimination};
 use crate::scene::equations::Unsupported;
+use crate::scene::layout::Layout;
 use crate::scene::mover::Mover;
 use branches::Branches;
 use closures::Hook;
@@ -382,6 +383,12 @@ impl System {
         self.set(t, y);
         let scene = self.scene.within(&self.configuration);
         self.recorded.rows.worst_loose(scene, &self.numbers)
+    }
+
+    /// Returns whether the rates depend on time other than by the state.
+    pub(in crate::analysis) fn reads_time(&self) -> bool {
+        let recorded = &self.recorded;
+        recorded.rate.program.reads(Layout::TIME) || !recorded.external.is_empty()
     }
 
     /// Returns whether there are angles whose turns are counted from step to step.

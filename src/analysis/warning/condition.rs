@@ -4,6 +4,7 @@ use super::Names;
 use crate::analysis::quantity::{length, short};
 use crate::diagnostic::Subject;
 use crate::model::{ElementId, ElementKind};
+use crate::results::digits_of_six;
 
 /// Something about an initial condition.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,18 +101,23 @@ impl ConditionWarning {
                      velocity {first} and displacement {second}, as Adams View writes it{others}"
                 )
             }
-            ConditionWarning::UnmetRate { found, wanted, .. } => format!(
-                " IC cannot be met: the constraints leave a velocity of {found:.6e} instead of {wanted:.6e}"
-            ),
+            ConditionWarning::UnmetRate { found, wanted, .. } => {
+                let [found, wanted] = apart(*found, *wanted);
+                format!(
+                    " IC cannot be met: the constraints leave a velocity of {found} instead of {wanted}"
+                )
+            }
             ConditionWarning::Unmet {
                 argument,
                 found,
                 wanted,
                 ..
-            } => format!(
-                " {argument} cannot be met: \
-                 the constraints leave {found:.6e} instead of {wanted:.6e}"
-            ),
+            } => {
+                let [found, wanted] = apart(*found, *wanted);
+                format!(
+                    " {argument} cannot be met: the constraints leave {found} instead of {wanted}"
+                )
+            }
             ConditionWarning::UnmetContact {
                 argument,
                 curve,
@@ -128,4 +134,13 @@ impl ConditionWarning {
             }
         }
     }
+}
+
+/// Writes two numbers that differ, with as many digits as it takes to see that.
+fn apart(a: f64, b: f64) -> [String; 2] {
+    let few = [a, b].map(digits_of_six);
+    if few[0] == few[1] {
+        return [a, b].map(|x| format!("{x:e}"));
+    }
+    few
 }

@@ -4,7 +4,7 @@ use super::Names;
 use crate::analysis::quantity::{amount, place, short};
 use crate::diagnostic::{Diagnostic, Subject};
 use crate::model::{ElementId, ElementKind};
-use crate::results::{Quantity, RankChange, RowChange};
+use crate::results::{Quantity, RankChange, RowChange, digits_of_six};
 use crate::scene::equations::Unsupported;
 use std::f64::consts::PI;
 
@@ -73,6 +73,15 @@ pub enum RunWarning {
         at: f64,
         /// number of directions in which it leaves
         directions: usize,
+    },
+    /// a small push off an equilibrium grows, though stiffness pushes back
+    PushGrows {
+        /// when
+        at: f64,
+        /// how fast, per time, and in how many cycles per time
+        growth: [f64; 2],
+        /// name of the unit of time
+        unit: String,
     },
     /// a spline is read where it has no data
     OutsideData {
@@ -177,7 +186,7 @@ impl RunWarning {
             RunWarning::EmptyColumn(_) => "unavailable",
             RunWarning::Gap { .. } => "no_finite_value",
             RunWarning::Rank(_) => "rank_change",
-            RunWarning::Unstable { .. } => "unstable_equilibrium",
+            RunWarning::Unstable { .. } | RunWarning::PushGrows { .. } => "unstable_equilibrium",
             RunWarning::OutsideData { .. } => "outside_data",
             RunWarning::BelowRounding { .. } | RunWarning::RoundingAddsUp { .. } => {
                 "below_rounding"
@@ -210,6 +219,7 @@ impl RunWarning {
             | RunWarning::NothingToSimulate { .. }
             | RunWarning::Rank(_)
             | RunWarning::Unstable { .. }
+            | RunWarning::PushGrows { .. }
             | RunWarning::BelowRounding { .. }
             | RunWarning::RoundingAddsUp { .. }
             | RunWarning::EnergyUnsure { .. }
@@ -260,12 +270,8 @@ impl RunWarning {
             RunWarning::EmptyColumn(unsupported) => format!(": {}", unsupported.lack),
             RunWarning::Gap { at, .. } => format!(" has no finite value at time {at}"),
             RunWarning::Rank(change) => of_rank(change),
-            RunWarning::Unstable { at, directions } => {
-                let plural = if *directions == 1 { "" } else { "s" };
-                format!(
-                    "the equilibrium at time {at} is unstable in {directions} direction{plural}"
-                )
-            }
+            RunWarning::Unstable { at, directions } => unstable(*at, *directions),
+            RunWarning::PushGrows { at, growth, unit } => push_grows(*at, *growth, unit),
             RunWarning::OutsideData {
                 spline,
                 range,
@@ -314,6 +320,31 @@ fn companion_ended(request: f64) -> String {
     format!(
         "a run at an error of {request:.1e} ends otherwise than this one: bars of error hold as far \
          as both go"
+    )
+}
+
+/// Returns that an equilibrium would be left after a small push.
+fn unstable(at: f64, directions: usize) -> String {
+    let plural = if directions == 1 { "" } else { "s" };
+    format!("the equilibrium at time {at} is unstable in {directions} direction{plural}")
+}
+
+/// Returns that a small push off an equilibrium grows, and how fast.
+fn push_grows(at: f64, [rate, frequency]: [f64; 2], unit: &str) -> String {
+    let time = if unit.is_empty() {
+        "units of time"
+    } else {
+        unit
+    };
+    let within = digits_of_six(1.0 / rate);
+    let swings = match frequency > 0.0 {
+        true => format!(", {} swings in each", digits_of_six(frequency / rate)),
+        false => String::new(),
+    };
+    format!(
+        "the equilibrium at time {at} is stable in stiffness, but a small push grows by e in \
+         {within} {time}{swings}: a load that follows the motion, negative damping or a state \
+         feeds it"
     )
 }
 

@@ -104,7 +104,7 @@ pub(super) static PAGES: &[Page] = &[
         equation: "",
         effect: Effect::Solved,
         notes: &[
-            n("ERROR", "rad, and part of the size of a loop", "1E-4", "Misalignment up to which an equation that would follow from others counts as redundant."),
+            n("ERROR", "rad, and part of the size of a loop", "1E-4", "Misalignment up to which an equation that would follow from others counts as redundant; 1E-12 and less: every equation counts as it is."),
             k("MAXIT", LIMITED),
             PATTERN,
             k("TLIMIT", LIMITED),

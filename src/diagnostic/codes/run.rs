@@ -117,8 +117,11 @@ falls for ever; a spring or a stop in that direction gives it a place to rest.
         summary: "the equilibrium that was found would be left after the smallest push",
         explanation: "\
 All loads balance, but in some directions a push is not answered by a force back: a pendulum on its head.
+Or it is, and grows all the same: a load that follows what it pushes, a damper whose sign is turned, a control whose
+state acts back feed a swing. Then the eigenvalues of `cognate linear --static` decide, and the fastest growth is told.
 
-    PART/2, QG=0,-100,0, …               start on the other side of the hinge",
+    PART/2, QG=0,-100,0, …               start on the other side of the hinge
+    SFORCE/1, …, FUNCTION=-2*VZ(3,4)     a damper that takes energy",
     },
     Code {
         name: "misaligned",
@@ -278,8 +281,10 @@ RADAU5, BDF and HHT take steps as long as the slow motion permits; AUTO changes 
 Four parallel axes make a four-bar that moves; tilted by any angle, however small, they make a structure. Axes in files are rounded, so an
 equation that depends on others but for IC/ERROR (in rad, and as a part of the size of its loop; 1e-4 when nobody says) is left out, and
 told with how far it is off. One that is off by more and locks its loop is refused by name. Give the axes all their digits to be rid of it.
+Where a structure is meant that is close to one that moves, take every equation as it is.
 
-    IC/ERROR=1E-6",
+    IC/ERROR=1E-6
+    IC/ERROR=1E-12                       every equation counts as it is",
     },
     Code {
         name: "wrong_way_round",
