@@ -72,6 +72,8 @@ pub struct Hht {
     controlled: Vec<f64>,
     /// the step in work
     next: Iterate,
+    /// predicted changes of the unknowns in it   (n)
+    rise: Vec<f64>,
     corrector: Corrector,
 }
 
@@ -153,6 +155,7 @@ impl Hht {
             differential: vec![1.0; n],
             controlled: vec![1.0; n],
             next: Iterate::new(n),
+            rise: zeros(),
             corrector: Corrector::new(n, options),
         }
     }
@@ -221,6 +224,7 @@ impl Hht {
             let a = now.ydot[i] + (now.a[i] - now.ydot[i]) * moved;
             let rise = self.differential[i]
                 * (h * now.ydot[i] + bend * (now.ydot[i] - now.ydot_before[i]));
+            self.rise[i] = rise;
             self.next.y[i] = now.y[i] + rise;
             self.next.ydot[i] =
                 cj * (rise - h * (1.0 - gamma) * a) + (am * a - af * now.ydot[i]) / (1.0 - af);
@@ -269,7 +273,9 @@ impl Hht {
         };
         for i in 0..self.next.y.len() {
             let a = now.ydot[i] + (now.a[i] - now.ydot[i]) * moved;
-            now.a[i] = (self.next.y[i] - now.y[i] - h * (1.0 - self.gamma) * a) / (h * self.gamma);
+            // yₙ₊₁ − yₙ without the rounding of y, which a short step would make large
+            let change = self.rise[i] + self.next.e[i];
+            now.a[i] = (change - h * (1.0 - self.gamma) * a) / (h * self.gamma);
         }
         now.ydot_before.copy_from_slice(&now.ydot);
         now.y.copy_from_slice(&self.next.y);
