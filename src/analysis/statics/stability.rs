@@ -36,7 +36,7 @@ impl Stability {
 impl Settler<'_> {
     /// Finds the answers to a push, and the direction in which the model leaves fastest.
     pub(super) fn stability(
-        &self,
+        &mut self,
         p: &Point,
         jacobian: &DMatrix<f64>,
     ) -> (Stability, Option<DVector<f64>>) {
@@ -63,24 +63,31 @@ impl Settler<'_> {
         let columns: Vec<Vec<f64>> = columns.collect();
         let free = Rank::of(columns.iter().map(Vec::as_slice), n, TOLERANCE).free_directions();
         let f = free.len();
-        if f == 0 {
-            return (Stability::default(), None);
+        let nothing = (Stability::default(), None);
+        if f == 0 || self.asked.stops() {
+            return nothing;
         }
         let z = DMatrix::from_fn(n, f, |i, j| free[j][i]);
         let stiffness = -(z.transpose() * k * &z);
         let mut metric = DMatrix::zeros(n, n);
         p.metric.add_to(&mut metric.as_view_mut(), 1.0);
+        if self.asked.stops() {
+            return nothing;
+        }
         let inertia = z.transpose() * metric * &z;
         let Some(factor) = Cholesky::new(inertia) else {
-            return (Stability::default(), None);
+            return nothing;
         };
         // L⁻¹ K L⁻ᵀ
         let lower = factor.l();
         let half = lower.solve_lower_triangular(&stiffness);
         let reduced = half.and_then(|h| lower.solve_lower_triangular(&h.transpose()));
         let Some(reduced) = reduced.map(|r| r.transpose()) else {
-            return (Stability::default(), None);
+            return nothing;
         };
+        if self.asked.stops() {
+            return nothing;
+        }
         let symmetric = (&reduced + reduced.transpose()) * 0.5;
         let eigen = symmetric.symmetric_eigen();
         let values: Vec<f64> = if asymmetry(&reduced) < 1e-6 {
