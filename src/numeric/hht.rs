@@ -40,6 +40,9 @@ const ORDER: usize = 2;
 const HHT_RHO: f64 = 0.7 / 1.3;
 /// Smallest error permitted in a step: beside it the rounding of a prediction counts for nothing.
 const LEAST_TOLERANCE: f64 = 5e-15;
+/// Rounding of an unknown above which changes of it are not taken from it, over the error permitted
+/// in a step.
+const FELT_ROUNDING: f64 = 1e-3;
 /// Growth of the step, as a factor, below which it stays as it is, for the sake of the matrix.
 const KEEP_STEP: f64 = 1.25;
 
@@ -273,8 +276,12 @@ impl Hht {
         };
         for i in 0..self.next.y.len() {
             let a = now.ydot[i] + (now.a[i] - now.ydot[i]) * moved;
-            // yₙ₊₁ − yₙ without the rounding of y, which a short step would make large
-            let change = self.rise[i] + self.next.e[i];
+            let y = self.next.y[i];
+            // where the rounding of y is felt, which a short step would make large, without it
+            let change = match f64::EPSILON * y.abs() * self.next.scale[i] > FELT_ROUNDING {
+                true => self.rise[i] + self.next.e[i],
+                false => y - now.y[i],
+            };
             now.a[i] = (change - h * (1.0 - self.gamma) * a) / (h * self.gamma);
         }
         now.ydot_before.copy_from_slice(&now.ydot);

@@ -289,7 +289,7 @@ fn statics_are_interrupted_between_any_few_columns_of_a_matrix() {
     };
     let (session, status, all) = begun(u64::MAX);
     assert_eq!(status, Status::Completed);
-    let matrices = session.run.record.counts.factorizations as u64;
+    let matrices = session.run.record.counts.factorizations;
     assert!(
         matrices > 0 && all > LEAST_LOOKS_PER_MATRIX * matrices,
         "{all} looks, {matrices} matrices"

@@ -158,7 +158,7 @@ fn short_runs_take_few_steps_however_far_from_the_origin() {
                 let mut s = begin(whole(&text), method, options);
                 go(&mut s, Analysis::Dynamic, end, 3);
                 // from rest by -K x/m, and by the turn that the same force begins
-                let wrong = off(&s, "VX(20)", |t| begun_speed(t));
+                let wrong = off(&s, "VX(20)", begun_speed);
                 let size = begun_speed(end).abs();
                 assert!(
                     wrong < size * (1e-4 + 10.0 * error),

@@ -26,6 +26,7 @@
 //! An equilibrium that turns out to be a saddle is left along its steepest descent, unless the
 //! model stood there from the start.
 
+mod asked;
 mod descent;
 mod metric;
 mod outcome;
@@ -36,7 +37,6 @@ mod step;
 pub use outcome::Imbalance;
 pub use stability::Stability;
 
-use crate::analysis::look::Asked;
 use crate::analysis::system::System;
 use crate::analysis::watch::Watch;
 use crate::expr::program::{Program, Work};
@@ -48,6 +48,7 @@ use crate::scalar::Dual;
 use crate::scene::layout::Layout;
 use crate::scene::programs::{record_more, record_moving};
 use crate::scene::slopes::WIDTH;
+use asked::Asked;
 use nalgebra::DMatrix;
 use point::Point;
 

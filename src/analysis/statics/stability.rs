@@ -34,14 +34,13 @@ impl Stability {
 }
 
 impl Settler<'_> {
-    /// Finds the answers to a push, and the direction in which the model leaves fastest.
-    pub(super) fn stability(
-        &mut self,
-        p: &Point,
-        jacobian: &DMatrix<f64>,
-    ) -> (Stability, Option<DVector<f64>>) {
+    /// Returns the derivatives of the loads along coordinates, where states follow at once:
+    ///
+    /// ```text
+    /// K − K_x e_x⁻¹ e_q
+    /// ```
+    fn slopes_with_states(&self, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
         let (n, d) = (self.n_v(), self.states.len());
-        // states follow: K − K_x e_x⁻¹ e_q
         let mut k = jacobian.view((0, 0), (n, n)).into_owned();
         if d > 0 {
             let own = jacobian.view((n, n), (d, d)).into_owned();
@@ -58,6 +57,17 @@ impl Settler<'_> {
                 k -= jacobian.view((0, n), (n, d)) * follow;
             }
         }
+        k
+    }
+
+    /// Finds the answers to a push, and the direction in which the model leaves fastest.
+    pub(super) fn stability(
+        &mut self,
+        p: &Point,
+        jacobian: &DMatrix<f64>,
+    ) -> (Stability, Option<DVector<f64>>) {
+        let (n, d) = (self.n_v(), self.states.len());
+        let k = self.slopes_with_states(jacobian);
         let gradient = p.rows.gradient.transpose();
         let columns = gradient.column_iter().map(|c| c.iter().copied().collect());
         let columns: Vec<Vec<f64>> = columns.collect();
