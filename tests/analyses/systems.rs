@@ -966,3 +966,26 @@ fn sensors_of_driven_mechanisms_act_where_they_are_passed() {
         }
     }
 }
+
+/// However many FRICTIONs there are, what BDF does not solve is told in a line.
+#[test]
+fn loops_that_implicit_methods_do_not_solve_are_told_in_a_line() {
+    let mut text = String::from("ACCGRAV/JGRAV=-9.81\n");
+    for k in 1..=12 {
+        let (part, marker) = (k + 1, 10 * k + 10);
+        text += &format!(
+            "PART/{part}, MASS=1, CM={marker}, IP=1,1,1, QG={k},0,0\nMARKER/{marker}, PART={part}\n\
+             MARKER/{}, PART=1, QP={k},0,0\nJOINT/{k}, REVOLUTE, I={marker}, J={}\n\
+             FRICTION/{k}, JOINT={k}, MU_STATIC=0.3, MU_DYNAMIC=0.2, STICTION_TRANSITION_VELOCITY=0.01, \
+             PIN_RADIUS=0.1, FRICTION_ARM=0.1\n",
+            marker + 1,
+            marker + 1
+        );
+    }
+    let mut s = session_by(&text, &["AZ(20,1)"], "BDF", 1e-3);
+    running::go(&mut s, Analysis::Dynamic, 0.01, 1);
+    let warned = s.run.record.warned();
+    let told = warned.iter().find(|w| w.contains("takes its place"));
+    let told = told.expect("a warning");
+    assert!(told.len() < 250 && told.contains("more)"), "{told}");
+}
