@@ -20,6 +20,9 @@
 //! unknown that nothing determines.
 #![allow(clippy::needless_range_loop)] // several columns at one row index
 
+/// Columns that are factored between two looks whether to go on.
+const COLUMNS_BETWEEN_LOOKS: usize = 16;
+
 /// Factors of a real matrix.
 #[derive(Clone, Debug)]
 pub struct Lu {
@@ -62,8 +65,23 @@ impl Lu {
     /// # Errors
     /// The column without a pivot.
     pub fn factor(&mut self, tiny: f64) -> Result<(), usize> {
+        self.factor_while(tiny, &mut || true)
+    }
+
+    /// The same for as long as `goes_on` says so, which is asked after every few columns.
+    ///
+    /// # Errors
+    /// The column without a pivot, or where it ended.
+    pub fn factor_while(
+        &mut self,
+        tiny: f64,
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<(), usize> {
         let n = self.n;
         for j in 0..n {
+            if j % COLUMNS_BETWEEN_LOOKS == COLUMNS_BETWEEN_LOOKS - 1 && !goes_on() {
+                return Err(j);
+            }
             let (done, rest) = self.a.split_at_mut(j * n);
             let column = &mut rest[..n];
             let size = if tiny > 0.0 {

@@ -40,6 +40,9 @@ const ORDER: usize = 2;
 const HHT_RHO: f64 = 0.7 / 1.3;
 /// Smallest error permitted in a step: beside it the rounding of a prediction counts for nothing.
 const LEAST_TOLERANCE: f64 = 5e-15;
+/// Rounding of an unknown above which changes of it are not taken from it, over the error permitted
+/// in a step.
+const FELT_ROUNDING: f64 = 1e-3;
 /// Growth of the step, as a factor, below which it stays as it is, for the sake of the matrix.
 const KEEP_STEP: f64 = 1.25;
 
@@ -72,6 +75,8 @@ pub struct Hht {
     controlled: Vec<f64>,
     /// the step in work
     next: Iterate,
+    /// predicted changes of the unknowns in it   (n)
+    rise: Vec<f64>,
     corrector: Corrector,
 }
 
@@ -153,6 +158,7 @@ impl Hht {
             differential: vec![1.0; n],
             controlled: vec![1.0; n],
             next: Iterate::new(n),
+            rise: zeros(),
             corrector: Corrector::new(n, options),
         }
     }
@@ -221,6 +227,7 @@ impl Hht {
             let a = now.ydot[i] + (now.a[i] - now.ydot[i]) * moved;
             let rise = self.differential[i]
                 * (h * now.ydot[i] + bend * (now.ydot[i] - now.ydot_before[i]));
+            self.rise[i] = rise;
             self.next.y[i] = now.y[i] + rise;
             self.next.ydot[i] =
                 cj * (rise - h * (1.0 - gamma) * a) + (am * a - af * now.ydot[i]) / (1.0 - af);
@@ -269,7 +276,13 @@ impl Hht {
         };
         for i in 0..self.next.y.len() {
             let a = now.ydot[i] + (now.a[i] - now.ydot[i]) * moved;
-            now.a[i] = (self.next.y[i] - now.y[i] - h * (1.0 - self.gamma) * a) / (h * self.gamma);
+            let y = self.next.y[i];
+            // where the rounding of y is felt, which a short step would make large, without it
+            let change = match f64::EPSILON * y.abs() * self.next.scale[i] > FELT_ROUNDING {
+                true => self.rise[i] + self.next.e[i],
+                false => y - now.y[i],
+            };
+            now.a[i] = (change - h * (1.0 - self.gamma) * a) / (h * self.gamma);
         }
         now.ydot_before.copy_from_slice(&now.ydot);
         now.y.copy_from_slice(&self.next.y);

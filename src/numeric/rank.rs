@@ -28,6 +28,7 @@
 //! So rows that share columns with few others, as in a long chain of loops, take about as long as
 //! their entries.
 
+use std::convert::Infallible;
 use std::ops::Range;
 
 /// Part of a row outside the others, relative to its length, below which it depends on them.
@@ -70,9 +71,31 @@ pub struct Rank {
     margin: (f64, f64),
 }
 
+/// Pivots that are chosen between two looks whether to go on.
+const PIVOTS_BETWEEN_LOOKS: usize = 64;
+
+/// The look of a caller who does not want to end early.
+fn goes_on() -> Result<(), Infallible> {
+    Ok(())
+}
+
 impl Rank {
     /// Decides the rank of the matrix with the given `rows`, each of length `n`.
     pub fn of<'a>(rows: impl IntoIterator<Item = &'a [f64]>, n: usize, tolerance: f64) -> Self {
+        let Ok(rank) = Self::of_while(rows, n, tolerance, &mut goes_on);
+        rank
+    }
+
+    /// The same, asking `look` after every few pivots whether to go on.
+    ///
+    /// # Errors
+    /// The answer of `look`.
+    pub fn of_while<'a, E>(
+        rows: impl IntoIterator<Item = &'a [f64]>,
+        n: usize,
+        tolerance: f64,
+        look: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Self, E> {
         let mut l: Vec<Vec<f64>> = rows.into_iter().map(<[f64]>::to_vec).collect();
         let of_row = |row: &Vec<f64>| norm(&row[span_from(row, 0, n)]);
         let mut length: Vec<f64> = l.iter().map(of_row).collect();
@@ -90,7 +113,7 @@ impl Rank {
             }
         }
         let leading = l.len();
-        Self::decide(l, length, leading, n, tolerance)
+        Self::decide(l, length, leading, (n, tolerance), look)
     }
 
     /// Decides the rank of rows that have been scaled by what counts as one in each, so that a
@@ -98,17 +121,18 @@ impl Rank {
     /// `leading` rows may be chosen; the others are told as dependent, with their remainders.
     pub fn scaled(rows: Vec<Vec<f64>>, leading: usize, n: usize, tolerance: f64) -> Self {
         let length = vec![1.0; rows.len()];
-        Self::decide(rows, length, leading, n, tolerance)
+        let Ok(rank) = Self::decide(rows, length, leading, (n, tolerance), &mut goes_on);
+        rank
     }
 
     /// Chooses rows, one per pivot, among the first `leading`.
-    fn decide(
+    fn decide<E>(
         mut l: Vec<Vec<f64>>,
         length: Vec<f64>,
         leading: usize,
-        n: usize,
-        tolerance: f64,
-    ) -> Self {
+        (n, tolerance): (usize, f64),
+        look: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Self, E> {
         let (mut chosen, mut reflections) = (Vec::new(), Vec::new());
         let (mut kept, mut dropped) = (1.0f64, 0.0f64);
         // the columns that each row lies between, and its part outside the rows chosen so far
@@ -121,6 +145,9 @@ impl Rank {
             if k == n || largest <= tolerance {
                 dropped = largest;
                 break;
+            }
+            if k % PIVOTS_BETWEEN_LOOKS == PIVOTS_BETWEEN_LOOKS - 1 {
+                look()?;
             }
             let pivot = parts.first_from(PREFERENCE_FOR_EARLIER * largest);
             kept = kept.min(parts.of(pivot));
@@ -147,7 +174,7 @@ impl Rank {
         }
         let rank = chosen.len();
         chosen.extend((0..l.len()).filter(|&i| spans.is_open[i]));
-        Rank {
+        Ok(Rank {
             n,
             rank,
             order: chosen,
@@ -155,7 +182,7 @@ impl Rank {
             l,
             reflections,
             margin: (kept, dropped),
-        }
+        })
     }
 
     /// Returns the number of independent rows.
@@ -545,6 +572,30 @@ mod tests {
         let (row, distance) = rank.least_norm(&[2.0, 6.0], &mut x);
         assert_eq!(row, 1);
         assert!((distance - 1.0).abs() < 1e-14, "{distance}");
+    }
+
+    #[test]
+    fn a_rank_is_left_after_a_few_pivots_where_the_caller_wants_that() {
+        let n = 5 * PIVOTS_BETWEEN_LOOKS;
+        // dense and well conditioned
+        let entry =
+            |i: usize, j: usize| ((i * 7 + j * 3) % 11) as f64 + if i == j { 1e3 } else { 0.0 };
+        let rows: Vec<Vec<f64>> = (0..n)
+            .map(|i| (0..n).map(|j| entry(i, j)).collect())
+            .collect();
+        let decided = |most: usize| {
+            let mut looks = 0;
+            let mut look = || {
+                looks += 1;
+                if looks < most { Ok(()) } else { Err(looks) }
+            };
+            Rank::of_while(rows.iter().map(Vec::as_slice), n, TOLERANCE, &mut look)
+                .map(|r| r.rank())
+        };
+        assert_eq!(decided(usize::MAX), Ok(n));
+        for most in 1..=5 {
+            assert_eq!(decided(most), Err(most));
+        }
     }
 
     #[test]

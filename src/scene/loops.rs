@@ -16,6 +16,7 @@ use super::configuration::{Configuration, Configured};
 use super::equations::{Equations, Lack, Unsupported};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder, Folding, Input, Program, Sym, Value};
+use crate::numeric::connected::{SparseRow, connected};
 use crate::scalar::Scalar;
 use crate::scene::asker::Asker;
 use std::cell::RefCell;
@@ -186,17 +187,42 @@ pub(super) fn eliminated<'b>(
         return Vec::new();
     }
     let (_, rows) = residuals(scene, numbers, builder);
-    let dense = |row: Vec<(usize, Value)>| {
-        let mut dense = vec![Sym::Constant(0.0); n];
-        for (place, value) in row {
-            dense[place] = Sym::of(value, builder);
-        }
-        dense
+    let symbols = |row: Vec<(usize, Value)>| {
+        let row = row.into_iter();
+        row.map(|(k, value)| (k, Sym::of(value, builder))).collect()
     };
-    let jacobian: Vec<Vec<Sym<'b>>> = rows.into_iter().map(dense).collect();
+    let jacobian: Vec<Vec<(usize, Sym<'b>)>> = rows.into_iter().map(symbols).collect();
     let at = Equations::with_unknowns(scene, numbers, vec![Sym::Constant(0.0); n], false);
     let rhs: Vec<Sym<'b>> = at.loop_residuals().into_iter().map(|r| -r).collect();
-    solve(jacobian, rhs)
+    solve_parts(&jacobian, &rhs)
+}
+
+/// `A x = b` by rows of A, the parts that share no unknown each by itself.
+fn solve_parts<S: Scalar>(a: &[Vec<(usize, S)>], b: &[S]) -> Vec<S> {
+    // row k and unknown k are in one part, so that each is square
+    let places = |(k, row): (usize, &Vec<(usize, S)>)| {
+        let others = row.iter().map(|e| (e.0, 1.0));
+        std::iter::once((k, 1.0)).chain(others).collect()
+    };
+    let pattern: Vec<SparseRow> = a.iter().enumerate().map(places).collect();
+    let mut x = b.to_vec();
+    for part in connected(&pattern, b.len()) {
+        let dense = |&r: &usize| {
+            let mut dense = vec![S::zero(); part.columns.len()];
+            for (place, value) in &a[r] {
+                if let Ok(k) = part.columns.binary_search(place) {
+                    dense[k] = *value;
+                }
+            }
+            dense
+        };
+        let own = part.rows.iter().map(dense).collect();
+        let right = part.rows.iter().map(|&r| b[r]).collect();
+        for (&k, value) in part.columns.iter().zip(solve(own, right)) {
+            x[k] = value;
+        }
+    }
+    x
 }
 
 /// `A x = b` by elimination with the largest pivot of each column, chosen when it is evaluated.
@@ -250,7 +276,7 @@ pub fn program(scene: Configured<'_>) -> Result<Option<Program>, Vec<Unsupported
 
 #[cfg(test)]
 mod tests {
-    use super::solve;
+    use super::{solve, solve_parts};
 
     #[test]
     fn elimination_exchanges_rows_where_it_must() {
@@ -261,5 +287,29 @@ mod tests {
         ];
         let x = solve(a, vec![7.0, 1.0, 5.0]);
         assert_eq!(x, [1.0, 2.0, 3.0]);
+    }
+
+    #[test]
+    fn what_shares_no_unknown_is_eliminated_apart_with_the_same_bits() {
+        // 0 with 3, 2 with 4 by a row of the other, 1 alone
+        let a = vec![
+            vec![(3, 0.3)],
+            vec![(1, 7.0)],
+            vec![(4, 1.1), (2, 0.1)],
+            vec![(0, 3.0), (3, 1.7)],
+            vec![(2, -5.0), (4, 0.2)],
+        ];
+        let b = [1.3, 2.9, 0.7, -4.1, 5.3];
+        let dense = |row: &Vec<(usize, f64)>| {
+            let mut dense = vec![0.0; b.len()];
+            row.iter().for_each(|&(k, x)| dense[k] = x);
+            dense
+        };
+        let whole = solve(a.iter().map(dense).collect(), b.to_vec());
+        assert_eq!(solve_parts(&a, &b), whole);
+        for (row, right) in a.iter().zip(b) {
+            let left: f64 = row.iter().map(|&(k, x)| x * whole[k]).sum();
+            assert!((left - right).abs() < 1e-14 * right.abs());
+        }
     }
 }

@@ -164,6 +164,9 @@ pub struct Switching {
     pub held: Option<Program>,
     /// residuals of the loops with branches held; reads the same
     pub held_loops: Option<Program>,
+    /// for each sensor, whether what it watches is beyond its value with branches held (0, 1);
+    /// reads the same
+    pub held_sensors: Option<Program>,
 }
 
 /// Returns the numbers that loads and differential equations are made of: where these change
@@ -259,26 +262,30 @@ pub fn switching(recorder: &Recorder<'_, '_>) -> Result<Option<Switching>, Vec<U
         n_sides: n_switches,
     };
     let n_rates = scene.layout.n_rates();
+    let n_sensors = scene.sensors.len();
     let mut values = rate(recorder.at());
-    values.extend(recorder.sources());
-    let (held, switches) = recorder
-        .end(&values, |builder, values| {
-            let layout = inputs_of(row);
-            // inputs stand in the order in which they are asked for
-            for &input in &layout {
-                builder.input(input);
-            }
-            let (wanted, sources) = (&values[..n_rates], &values[n_rates..]);
-            let side = |k: usize| Input::Slot(row.side_at(k) as u32);
-            let (held, switches) = builder.held(wanted, sources, side);
-            [held, switches].map(|values| builder.finish_with_inputs(&values, &layout))
-        })?
-        .into();
+    let sources = recorder.sources();
+    // the last of them
+    values.extend(&sources[sources.len() - n_sensors..]);
+    values.extend(sources);
+    let [held, switches, sensors] = recorder.end(&values, |builder, values| {
+        let layout = inputs_of(row);
+        // inputs stand in the order in which they are asked for
+        for &input in &layout {
+            builder.input(input);
+        }
+        let (wanted, sources) = values.split_at(n_rates + n_sensors);
+        let side = |k: usize| Input::Slot(row.side_at(k) as u32);
+        let (mut held, switches) = builder.held(wanted, sources, side);
+        let sensors = held.split_off(n_rates);
+        [held, switches, sensors].map(|values| builder.finish_with_inputs(&values, &layout))
+    })?;
     Ok(Some(Switching {
         switches,
         unknowns: None,
         held: Some(held),
         held_loops: None,
+        held_sensors: (n_sensors > 0).then_some(sensors),
     }))
 }
 
@@ -310,6 +317,7 @@ fn switching_of_loops(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Un
         n_more: n_loops,
         n_sides: n_switches,
     };
+    let n_sensors = scene.sensors.len();
     let n_rates = scene.layout.n_rates();
     let (mut all, _) = recorded(
         scene,
@@ -319,24 +327,30 @@ fn switching_of_loops(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Un
         |at, _| {
             let mut out = rate(at);
             out.extend(at.loop_residuals());
-            out.extend(sources(at, &scene));
+            let sources = sources(at, &scene);
+            // the last of them
+            out.extend(&sources[sources.len() - n_sensors..]);
+            out.extend(sources);
             out
         },
         |builder, values| {
-            let (wanted, sources) = values.split_at(n_rates + n_loops);
+            let (wanted, sources) = values.split_at(n_rates + n_loops + n_sensors);
             let side = |k: usize| Input::Slot(row.side_at(k) as u32);
-            let (held, switches) = builder.held(wanted, sources, side);
-            let (rates, residuals) = held.split_at(n_rates);
-            vec![switches, residuals.to_vec(), rates.to_vec()]
+            let (mut held, switches) = builder.held(wanted, sources, side);
+            let sensors = held.split_off(n_rates + n_loops);
+            let residuals = held.split_off(n_rates);
+            vec![switches, sensors, residuals, held]
         },
     );
     let held = all.pop();
     let held_loops = all.pop();
+    let held_sensors = all.pop().filter(|_| n_sensors > 0);
     Ok(all.pop().map(|switches| Switching {
         switches,
         unknowns,
         held,
         held_loops,
+        held_sensors,
     }))
 }
 

@@ -259,3 +259,92 @@ fn assembly_is_interrupted_between_any_two_of_its_steps() {
     // three of them before and after
     assert!(while_assembled >= 15, "{while_assembled}");
 }
+
+/// Parts on springs between each other and ground, in a row: at rest under their weight after a few steps of statics.
+fn row_on_springs(n: usize) -> String {
+    let mut text = String::from("ACCGRAV/JGRAV=-9.81\n");
+    for k in 2..2 + n {
+        let (own, before, x) = (10 * k, if k == 2 { 1 } else { 10 * (k - 1) }, k - 1);
+        text += &format!(
+            "PART/{k}, MASS=1, CM={own}, IP=1,1,1, QG={x},0,0\nMARKER/{own}, PART={k}\n\
+             BUSHING/{k}, I={own}, J={before}, K=1E3,1E3,1E3, C=1,1,1, KT=1E3,1E3,1E3, CT=1,1,1\n\
+             BUSHING/{}, I={own}, J=1, K=1E3,1E3,1E3, C=1,1,1, KT=1E3,1E3,1E3, CT=1,1,1\n",
+            k + 1000
+        );
+    }
+    text
+}
+
+/// Statics solve with full matrices, whose cost grows with the cube of the model: a caller is asked on the way through
+/// each, not only between them.
+#[test]
+fn statics_are_interrupted_between_any_few_columns_of_a_matrix() {
+    const LEAST_LOOKS_PER_MATRIX: u64 = 12;
+    let text = row_on_springs(12);
+    let begun = |most: u64| {
+        let mut session = begin(model(&text), "row", Options::default());
+        let mut watch = Impatient { looks: 0, most };
+        let status = session.simulate(Analysis::Static, 0.0, 1, &mut watch);
+        (session, status.expect("a run"), watch.looks)
+    };
+    let (session, status, all) = begun(u64::MAX);
+    assert_eq!(status, Status::Completed);
+    let matrices = session.run.record.counts.factorizations;
+    assert!(
+        matrices > 0 && all > LEAST_LOOKS_PER_MATRIX * matrices,
+        "{all} looks, {matrices} matrices"
+    );
+    for n in 1..all {
+        let (mut session, status, looks) = begun(n);
+        // the first answer is obeyed, whatever the search would have tried next
+        assert_eq!((status, looks), (Status::Interrupted, n));
+        if n % 16 == 0 {
+            let again = session.simulate(Analysis::Static, 0.0, 1, &mut Unwatched);
+            assert_eq!(again.expect("a run"), Status::Completed, "{n}");
+        }
+    }
+}
+
+/// The first velocities of a closed chain with a given one are found by ranks over all its rows.
+#[test]
+fn first_velocities_are_interrupted_between_any_two_of_their_ranks() {
+    // a five-bar that one bar turns: the others must be found
+    let points = [[0.0, 0.0], [0.0, 1.0], [0.7, 1.6], [1.5, 1.2], [1.4, 0.0]];
+    let mut text = String::from("ACCGRAV/JGRAV=-9.81\n");
+    for k in 0..4 {
+        let ([x, y], [u, v], part) = (points[k], points[k + 1], k + 2);
+        let spin = if k == 0 { ", WZ=1" } else { "" };
+        text += &format!(
+            "PART/{part}, MASS=1, CM={part}0, IP=1,1,1, QG={x:?},{y:?},0{spin}\nMARKER/{part}0, PART={part}\n\
+             MARKER/{part}1, PART={part}, QP={:?},{:?},0\nJOINT/{part}, REVOLUTE, I={part}0, J={}\n",
+            u - x,
+            v - y,
+            if k == 0 {
+                "1".into()
+            } else {
+                format!("{}1", part - 1)
+            }
+        );
+    }
+    text += "MARKER/2, PART=1, QP=1.4,0,0\nJOINT/9, REVOLUTE, I=51, J=2\n";
+    let begun = |most: u64| {
+        let mut session = begin(model(&text), "five bars", Options::default());
+        let mut watch = Impatient { looks: 0, most };
+        let status = session.simulate(Analysis::Dynamic, 0.01, 1, &mut watch);
+        (session, status.expect("a run"), watch.looks)
+    };
+    let (_, status, _) = begun(u64::MAX);
+    assert_eq!(status, Status::Completed);
+    let mut in_velocities = 0;
+    for n in 1.. {
+        let (session, status, looks) = begun(n);
+        assert_eq!((status, looks), (Status::Interrupted, n));
+        if session.run.rows() > 0 {
+            break;
+        }
+        let reason = &session.run.record.stop_reason;
+        in_velocities += u64::from(session.run.record.seconds.assemble == 0.0);
+        assert!(!reason.contains("contradict"), "{reason}");
+    }
+    assert!(in_velocities >= 24, "{in_velocities}");
+}

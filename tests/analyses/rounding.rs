@@ -130,3 +130,73 @@ fn moving_a_whole_model_changes_no_answer_beyond_rounding() {
         }
     }
 }
+
+/// A part on a bushing, its marker off its mass, drawn 0.2 m from where the bushing is without load.
+fn on_a_bushing(mass: f64, [stiffness, damping]: [f64; 2]) -> String {
+    let [turning, slowing] = [stiffness, damping].map(|x| 1e-3 * x);
+    let inertia = 0.1 * mass;
+    format!(
+        "TEST\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS={mass:e}, CM=20, IP={inertia:e},{inertia:e},{inertia:e}\n\
+         MARKER/20, PART=2, QP=0.1,0.1,0.1\nMARKER/21, PART=2, QP=0.12,0.08,0.1\n\
+         BUSHING/1, I=21, J=1, K={stiffness:e},{stiffness:e},{stiffness:e}, C={damping:e},{damping:e},{damping:e}, \
+         KT={turning:e},{turning:e},{turning:e}, CT={slowing:e},{slowing:e},{slowing:e}\n\
+         ACCGRAV/KGRAV=-9.81\nEND\n"
+    )
+}
+
+/// A step far shorter than the coordinates are rounded moves by differences that no coordinate shows: methods must not
+/// take these differences from rounded coordinates.
+#[test]
+fn short_runs_take_few_steps_however_far_from_the_origin() {
+    const MOST_STEPS: usize = 5_000;
+    let text = on_a_bushing(1.0, [1e5, 10.0]);
+    for method in ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"] {
+        for error in [1e-3, 1e-6, 1e-8, 1e-9] {
+            for end in [1e-12, 1e-9, 1e-7, 1e-6] {
+                let mut options = options_by(&["VX(20)"], method, error);
+                options.max_steps = Some(MOST_STEPS);
+                let mut s = begin(whole(&text), method, options);
+                go(&mut s, Analysis::Dynamic, end, 3);
+                // from rest by -K x/m, and by the turn that the same force begins
+                let wrong = off(&s, "VX(20)", begun_speed);
+                let size = begun_speed(end).abs();
+                assert!(
+                    wrong < size * (1e-4 + 10.0 * error),
+                    "{method} at {error:e} to {end:e}: {wrong:e} of {size:e}"
+                );
+            }
+        }
+    }
+}
+
+/// The speed along x that the bushing gives the mass in a time so short that nothing has moved.
+fn begun_speed(t: f64) -> f64 {
+    -1e5 * 0.12 * t
+}
+
+/// However much longer a run is than its first transient, the transient is followed and the rest reached. NEWMARK damps
+/// nothing that is stiff, and may go on vibrating.
+#[test]
+fn runs_end_at_rest_whatever_their_duration() {
+    for (mass, law) in [(1.0, [1e5, 1e3]), (1e-3, [1e9, 1e5])] {
+        let text = on_a_bushing(mass, law);
+        for method in ["AUTO", "RADAU5", "BDF", "HHT"] {
+            for error in [1e-3, 1e-5] {
+                for end in [1e3, 1e6, 1e9] {
+                    let mut s = begin(
+                        whole(&text),
+                        method,
+                        options_by(&["VX(20)", "FZ(21,1,1)"], method, error),
+                    );
+                    go(&mut s, Analysis::Dynamic, end, 2);
+                    let weight = 9.81 * mass;
+                    let (speed, load) =
+                        (running::last(&s, "VX(20)"), running::last(&s, "FZ(21,1,1)"));
+                    let told = format!("{method} at {error:e} to {end:e}: {speed:e}, {load:e}");
+                    assert!(speed.abs() < 1e-6, "{told}");
+                    assert!((load - weight).abs() < 0.05 * weight, "{told}");
+                }
+            }
+        }
+    }
+}

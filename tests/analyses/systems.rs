@@ -853,3 +853,139 @@ fn the_past_goes_on_where_other_delays_come_and_go() {
         assert!(running::off(&s, "VARVAL(2)", exact) < 1e-8, "{comes:?}");
     }
 }
+
+/// A fall with sensors; the times at which they were triggered, and the last time of the run.
+fn triggered(statements: &str, (method, error, outputs): (&str, f64, usize)) -> f64 {
+    let text = format!(
+        "PART/2, MASS=1, CM=20, IP=1,1,1, QG=0,0,10, WZ=2\nMARKER/20, PART=2\nMARKER/21, PART=1\n\
+         ACCGRAV/KGRAV=-9.81\n{statements}"
+    );
+    let mut s = session_by(&text, &["DZ(20,1)"], method, error);
+    let status = try_to(&mut s, Analysis::Dynamic, 2.0, outputs);
+    assert_eq!(status, Status::Completed, "{statements}");
+    last(&s, "time")
+}
+
+/// Whatever the method, the request, the number of outputs and ERROR, a sensor ends the run where its expression passes its
+/// value: beside another one, at an output, by a jump, and where the branch on which the motion goes on begins beyond it.
+#[test]
+fn sensors_act_at_the_instant_at_which_they_are_passed() {
+    let fallen = |z: f64| (2.0 * z / 9.81_f64).sqrt();
+    let cases: [(&str, f64); 12] = [
+        (
+            "SENSOR/1, FUNCTION=TIME, VALUE=0.5, GE, HALT, ERROR=0\n",
+            0.5,
+        ),
+        (
+            "SENSOR/1, FUNCTION=TIME, VALUE=0.5, EQ, HALT, ERROR=0\n",
+            0.5,
+        ),
+        (
+            "SENSOR/1, FUNCTION=-TIME, VALUE=-0.5, LE, HALT, ERROR=0\n",
+            0.5,
+        ),
+        (
+            "SENSOR/2, FUNCTION=TIME, VALUE=0.5, GE, PRINT, ERROR=0\nSENSOR/1, FUNCTION=TIME, VALUE=0.5, GE, HALT, ERROR=0\n",
+            0.5,
+        ),
+        (
+            "SENSOR/2, FUNCTION=TIME, VALUE=0.5, GE, PRINT, ERROR=0\n\
+             SENSOR/1, FUNCTION=TIME, VALUE=0.500000001, GE, HALT, ERROR=0\n",
+            0.500000001,
+        ),
+        (
+            "SENSOR/1, FUNCTION=IF(TIME-0.7:0,0,30), VALUE=1, GE, HALT\n",
+            0.7,
+        ),
+        (
+            "SENSOR/1, FUNCTION=IF(TIME-0.7:30,0,0), VALUE=1, LE, HALT\n",
+            0.7,
+        ),
+        (
+            "SENSOR/1, FUNCTION=IF(TIME-0.7:-30,0,30), VALUE=1, EQ, HALT\n",
+            0.7,
+        ),
+        (
+            "SENSOR/1, FUNCTION=IF(DZ(20,1)-9:30,0,0), VALUE=1, GE, HALT\n",
+            fallen(1.0),
+        ),
+        (
+            "SFORCE/1, I=20, J=21, ACTIONONLY, TRANSLATION, FUNCTION=IF(TIME-0.7:0,0,30)\n\
+             SENSOR/1, FUNCTION=ACCZ(20,1), VALUE=1, GE, HALT, ERROR=1E-9\n",
+            0.7,
+        ),
+        (
+            "SENSOR/1, FUNCTION=VZ(20,1)**2, VALUE=4, GE, HALT, ERROR=0\n",
+            2.0 / 9.81,
+        ),
+        // an angle passes half a turn without passing its value
+        (
+            "SENSOR/1, FUNCTION=AZ(20,1), VALUE=3, EQ, ANGULAR, HALT, ERROR=0\n",
+            1.5,
+        ),
+    ];
+    for (statements, expected) in cases {
+        for method in ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"] {
+            for outputs in [3, 200] {
+                let at = triggered(statements, (method, 1e-6, outputs));
+                let off = (at - expected).abs();
+                assert!(off < 1e-5, "{statements} by {method}: {at} for {expected}");
+                let by_time = statements.contains("TIME") && !statements.contains("DZ");
+                assert!(
+                    off < 1e-9 || !by_time,
+                    "{statements} by {method}: {at} for {expected}"
+                );
+            }
+        }
+    }
+}
+
+/// The same for a mechanism that its motions move alone.
+#[test]
+fn sensors_of_driven_mechanisms_act_where_they_are_passed() {
+    let driven = "PART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nJOINT/1, REVOLUTE, I=20, J=1\n\
+                  MOTION/1, JOINT=1, ROTATION, FUNCTION=2*TIME\n";
+    for (sensor, expected) in [
+        ("FUNCTION=TIME, VALUE=0.5, GE", 0.5),
+        ("FUNCTION=TIME, VALUE=0.5, EQ", 0.5),
+        ("FUNCTION=-TIME, VALUE=-0.5, LE", 0.5),
+        ("FUNCTION=IF(TIME-0.7:0,0,30), VALUE=1, GE", 0.7),
+        ("FUNCTION=IF(TIME-0.7:-30,0,30), VALUE=1, EQ", 0.7),
+        ("FUNCTION=AZ(20,1), VALUE=3, EQ, ANGULAR", 1.5),
+    ] {
+        for outputs in [3, 50, 200] {
+            let text = format!("{driven}SENSOR/1, {sensor}, HALT, ERROR=0\n");
+            let mut s = session_by(&text, &["AZ(20,1)"], "AUTO", 1e-6);
+            let status = try_to(&mut s, Analysis::Kinematic, 2.0, outputs);
+            assert_eq!(status, Status::Completed, "{sensor}");
+            let at = last(&s, "time");
+            assert!(
+                (at - expected).abs() < 1e-12,
+                "{sensor} with {outputs} outputs: {at}"
+            );
+        }
+    }
+}
+
+/// However many FRICTIONs there are, what BDF does not solve is told in a line.
+#[test]
+fn loops_that_implicit_methods_do_not_solve_are_told_in_a_line() {
+    let mut text = String::from("ACCGRAV/JGRAV=-9.81\n");
+    for k in 1..=12 {
+        let (part, marker) = (k + 1, 10 * k + 10);
+        text += &format!(
+            "PART/{part}, MASS=1, CM={marker}, IP=1,1,1, QG={k},0,0\nMARKER/{marker}, PART={part}\n\
+             MARKER/{}, PART=1, QP={k},0,0\nJOINT/{k}, REVOLUTE, I={marker}, J={}\n\
+             FRICTION/{k}, JOINT={k}, MU_STATIC=0.3, MU_DYNAMIC=0.2, STICTION_TRANSITION_VELOCITY=0.01, \
+             PIN_RADIUS=0.1, FRICTION_ARM=0.1\n",
+            marker + 1,
+            marker + 1
+        );
+    }
+    let mut s = session_by(&text, &["AZ(20,1)"], "BDF", 1e-3);
+    running::go(&mut s, Analysis::Dynamic, 0.01, 1);
+    let warned = s.run.record.warned();
+    let told = warned.iter().find(|w| w.contains("takes its place"));
+    let told = told.expect("a warning");
+    assert!(told.len() < 250 && told.contains("more)"), "{told}");
+}

@@ -176,7 +176,11 @@ impl Session {
             return stopped.map_or(Ok(None), Err);
         }
         (start.configuration).begin_states(&start.scene, &mut start.x);
-        let v = velocities::velocities(start.here(), model, start.t, &start.q, &start.x);
+        let at = (start.t, &start.q[..], &start.x[..]);
+        let v = velocities::velocities_while(start.here(), model, at, &mut seen);
+        if let Some(said) = stopped {
+            return Err(said);
+        }
         Ok(v.ok().map(|v| (start, v)))
     }
 }

@@ -112,7 +112,9 @@ impl Session {
         start.begin_turns(self.carried.as_ref());
         let (v, unmet) = match before.filter(|_| found.is_none()) {
             Some(placed) => placed.velocities(),
-            None => self.velocities(&mut start, moved.as_ref())?,
+            None => self.looking(SetUp::Assembling, watch, |session, look| {
+                session.velocities(&mut start, moved.as_ref(), look)
+            })?,
         };
         if let Some(found) = found.filter(|_| self.keeps_place(inputs)) {
             self.keep_place(mode, found, (v.clone(), unmet.clone()));
@@ -281,9 +283,10 @@ impl Session {
         &self,
         start: &mut Start,
         moved: Option<&Model>,
+        look: Look<'_>,
     ) -> Result<Velocities, Vec<Diagnostic>> {
         let mode = start.mode;
-        let v = self.velocities_on_rows(start, moved)?;
+        let v = self.velocities_on_rows(start, moved, look)?;
         if self.carried.is_some() || mode != DYNAMIC && mode != INITIAL_CONDITIONS {
             return Ok((v, Vec::new()));
         }
@@ -296,6 +299,7 @@ impl Session {
         &self,
         start: &mut Start,
         moved: Option<&Model>,
+        look: Look<'_>,
     ) -> Result<Vec<f64>, Vec<Diagnostic>> {
         let at_rest = self.is_at_rest();
         if start.mode == STATIC || start.mode == LINEAR && at_rest {
@@ -305,7 +309,8 @@ impl Session {
             return Ok(v);
         }
         let given = moved.filter(|_| !at_rest).unwrap_or(&self.model);
-        velocities::velocities(start.here(), given, start.t, &start.q, &start.x)
+        let at = (start.t, &start.q[..], &start.x[..]);
+        velocities::velocities_while(start.here(), given, at, look)
             .map_err(|said| blamed(given, said))
     }
 

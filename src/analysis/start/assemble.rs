@@ -251,9 +251,22 @@ pub(super) fn scaled_part(part: &Block, a: &[SparseRow], w: &[f64]) -> Vec<Vec<f
 
 /// Decides which rows depend on others.
 pub(super) fn rank_of(a: &DMatrix<f64>) -> Rank {
+    let go_on = &mut || Ok::<(), Infallible>(());
+    let Ok(rank) = rank_while(a, go_on);
+    rank
+}
+
+/// The same, asking `look` on the way whether to go on.
+///
+/// # Errors
+/// The answer of `look`.
+pub(super) fn rank_while<E>(
+    a: &DMatrix<f64>,
+    look: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<Rank, E> {
     let rows = a.row_iter().map(|r| r.iter().copied().collect());
     let rows: Vec<Vec<f64>> = rows.collect();
-    Rank::of(rows.iter().map(Vec::as_slice), a.ncols(), 1e-9)
+    Rank::of_while(rows.iter().map(Vec::as_slice), a.ncols(), 1e-9, look)
 }
 
 /// Returns the shortest solution of `A x = b` in the metric W, rows counting by their direction;
@@ -435,7 +448,7 @@ pub(super) fn positions_while(
     let (_, gradient, _) = rows_at(here, t, q, x);
     let n = scene.layout.n_v;
     look()?;
-    let (independent, dependent) = rank(scene, &gradient, &[]);
+    let (independent, dependent) = rank_of_rows(scene, &gradient, &[], look)?;
     look()?;
     found.freedom_here = n - independent.len();
     (found.freedom, found.redundant) = (found.freedom_here, dependent.clone());
@@ -521,6 +534,21 @@ pub fn rank(
     gradient: &[SparseRow],
     first: &[usize],
 ) -> (Vec<usize>, Vec<Redundant>) {
+    let go_on = &mut || Ok::<(), Infallible>(());
+    let Ok(found) = rank_of_rows(scene, gradient, first, go_on);
+    found
+}
+
+/// The same, asking `look` on the way whether to go on.
+///
+/// # Errors
+/// The answer of `look`.
+pub(super) fn rank_of_rows<E>(
+    scene: &Scene,
+    gradient: &[SparseRow],
+    first: &[usize],
+    look: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<(Vec<usize>, Vec<Redundant>), E> {
     let w = &weights(scene)[..];
     let mut preferred = vec![false; scene.rows.len()];
     first.iter().for_each(|&r| preferred[r] = true);
@@ -542,7 +570,7 @@ pub fn rank(
             }
         }
         let n = part.columns.len();
-        let rank = Rank::of(rows.iter().map(Vec::as_slice), n, DEPENDENT);
+        let rank = Rank::of_while(rows.iter().map(Vec::as_slice), n, DEPENDENT, look)?;
         independent.extend(rank.independent().into_iter().map(|k| part.rows[k]));
         redundant.extend(rank.dependent().into_iter().map(|d| {
             let mut combination: Vec<(usize, f64)> = d
@@ -563,7 +591,7 @@ pub fn rank(
     }
     independent.sort_unstable();
     redundant.sort_by_key(|d: &Redundant| order(&d.row));
-    (independent, redundant)
+    Ok((independent, redundant))
 }
 
 /// Returns an orthonormal basis of the vectors that a matrix maps to zero, by columns.

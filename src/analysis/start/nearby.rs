@@ -77,7 +77,7 @@ pub(super) fn look(
         };
         go_on()?;
         let (_, gradient, _) = assemble::rows_at(scene.within(&there), t, &place.q, x);
-        let (independent, redundant) = assemble::rank(&scene, &gradient, here);
+        let (independent, redundant) = assemble::rank_of_rows(&scene, &gradient, here, go_on)?;
         if best
             .as_ref()
             .is_none_or(|b| b.independent.len() < independent.len())

@@ -1,11 +1,12 @@
 //! Velocities to start with: those nearest to the dataset's that satisfy the rows.
 
 use super::assemble::{
-    DEPENDENT, EMPTY, directions, least_change, null_space, numbers, parts, rank_of, rows_at,
+    DEPENDENT, EMPTY, directions, least_change, numbers, parts, rank_while, rows_at,
 };
 use super::initial_conditions::of_joints;
 use super::tangents::Tangents;
 use crate::analysis::direction::Direction;
+use crate::analysis::look::Look;
 use crate::analysis::quantity::{length, short};
 use crate::analysis::warning::ConditionWarning;
 use crate::diagnostic::{Cause, Diagnostic};
@@ -72,12 +73,27 @@ pub fn velocities(
     q: &[f64],
     x: &[f64],
 ) -> Result<Vec<f64>, Vec<Diagnostic>> {
+    velocities_while(scene, model, (t, q, x), &mut || Ok(()))
+}
+
+/// The same, asking `look` on the way whether to go on.
+///
+/// # Errors
+/// Those of [`velocities`], and what `look` answers.
+pub(in crate::analysis) fn velocities_while(
+    scene: Configured<'_>,
+    model: &Model,
+    (t, q, x): (f64, &[f64], &[f64]),
+    look: Look<'_>,
+) -> Result<Vec<f64>, Vec<Diagnostic>> {
     let n = scene.layout.n_v;
     let (_, gradient, drift) = rows_at(scene, t, q, x);
+    look()?;
     // v = v₀ + N z, with N the null space of the rows
     let w = vec![1.0; n];
     let firm = without_empty(scene, &gradient);
     let mut v = least_change(&firm, &w, &(-&drift));
+    look()?;
     let entries = gradient.iter().flatten();
     let largest = entries.fold(0.0, |m: f64, e| m.max(e.1.abs()));
     let scale = 1.0 + drift.amax().max(largest);
@@ -98,21 +114,23 @@ pub fn velocities(
     let all: Vec<SparseRow> = gradient.iter().chain(all).cloned().collect();
     let mut changed = false;
     for part in parts(&all, n) {
+        look()?;
         let own = Part::new(&part, &firm, levels);
         let here = DVector::from_iterator(part.columns.len(), part.columns.iter().map(|&k| v[k]));
         if own.holds(&here) {
             continue;
         }
         changed = true;
-        let (nearest, left) = own.nearest(here);
+        let (nearest, left) = own.nearest(here, look)?;
         for (&k, x) in part.columns.iter().zip(nearest.iter()) {
             v[k] = *x;
         }
         // where branches meet, along one of them
-        let dependences = own.dependences(&part, scene);
+        let dependences = own.dependences(&part, scene, look)?;
         if dependences.is_empty() {
             continue;
         }
+        look()?;
         let tangents = Tangents::new(scene, (t, q, x), dependences);
         let whole = |s: nalgebra::DVectorView<'_, f64>| {
             let mut all = DVector::zeros(n);
@@ -313,17 +331,22 @@ impl Part {
     }
 
     /// Returns the combinations of rows of `scene` that are zero in first order.
-    fn dependences(&self, part: &Block, scene: Configured<'_>) -> Vec<SparseRow> {
+    fn dependences(
+        &self,
+        part: &Block,
+        scene: Configured<'_>,
+        look: Look<'_>,
+    ) -> Result<Vec<SparseRow>, Vec<Diagnostic>> {
         let own = |r: usize| part.rows.get(r).copied();
         let kept = |r: &usize| !scene.configuration.is_loose(*r);
-        let all = rank_of(&self.g).dependent().into_iter();
+        let all = rank_while(&self.g, look)?.dependent().into_iter();
         let combination = all.map(|d| {
             let others = d.combination.iter().map(|&(r, x)| (r, -x));
             let terms = std::iter::once((d.row, 1.0)).chain(others);
             let terms = terms.filter_map(|(r, x)| Some((own(r).filter(kept)?, x)));
             terms.collect::<SparseRow>()
         });
-        combination.filter(|terms| !terms.is_empty()).collect()
+        Ok(combination.filter(|terms| !terms.is_empty()).collect())
     }
 
     /// Returns how far velocities are from those that are not given, but wished to be zero.
@@ -334,8 +357,12 @@ impl Part {
 
     /// Returns the velocities nearest to the given ones that the rows permit, from some that they
     /// do, and the directions that rows and given ones leave free, by columns.
-    fn nearest(&self, mut v: DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
-        let mut space = null_space(&self.g);
+    fn nearest(
+        &self,
+        mut v: DVector<f64>,
+        look: Look<'_>,
+    ) -> Result<(DVector<f64>, DMatrix<f64>), Vec<Diagnostic>> {
+        let mut space = directions(&rank_while(&self.g, look)?, self.g.ncols());
         let mut left = space.clone();
         // each level as well as may be within the freedom that the levels before leave
         for (a, b) in &self.levels {
@@ -350,13 +377,15 @@ impl Part {
                     reduced.row_mut(r).fill(0.0);
                 }
             }
-            let rank = rank_of(&reduced);
+            let rank = rank_while(&reduced, look)?;
+            look()?;
             let mut z = vec![0.0; space.ncols()];
             rank.least_squares((b - a * &v).as_slice(), &mut z);
             v += &space * DVector::from_vec(z);
+            look()?;
             space = &space * directions(&rank, space.ncols());
         }
-        (v, left)
+        Ok((v, left))
     }
 }
 

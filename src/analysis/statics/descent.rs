@@ -4,7 +4,6 @@ use super::metric::total_mass;
 use super::point::Point;
 use super::step::Pace;
 use super::{NoEquilibrium, Settler};
-use crate::analysis::watch::Watch;
 use crate::scene::equations::Equations;
 use nalgebra::{DMatrix, DVector};
 
@@ -134,10 +133,9 @@ impl Settler<'_> {
         &mut self,
         p: &mut Point,
         iterations: &mut usize,
-        watch: &mut dyn Watch,
     ) -> (Result<(), NoEquilibrium>, DMatrix<f64>) {
         let mut jacobian = self.jacobian(p);
-        let outcome = self.steps(p, &mut jacobian, iterations, watch);
+        let outcome = self.steps(p, &mut jacobian, iterations);
         (outcome, jacobian)
     }
 
@@ -146,7 +144,6 @@ impl Settler<'_> {
         p: &mut Point,
         jacobian: &mut DMatrix<f64>,
         iterations: &mut usize,
-        watch: &mut dyn Watch,
     ) -> Result<(), NoEquilibrium> {
         let budget = MAX_STEPS.max(self.settings.iterations) + *iterations;
         let mut course = Course::new();
@@ -160,7 +157,7 @@ impl Settler<'_> {
                 return Ok(());
             }
             let left = self.left(p, jacobian, scales);
-            if watch.interrupted() {
+            if self.asked.stops() {
                 return Err(NoEquilibrium::Interrupted);
             }
             // as good as was asked for: go on only as long as that soon ends
@@ -269,6 +266,9 @@ impl Settler<'_> {
             }
             if left.small && length >= longest {
                 return Err(NoStep::Arrived);
+            }
+            if self.asked.stops() {
+                return Err(NoStep::Unforeseen);
             }
             length *= 0.25;
             if length < 1e-14 * longest.min(1e6) {

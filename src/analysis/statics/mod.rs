@@ -26,6 +26,7 @@
 //! An equilibrium that turns out to be a saddle is left along its steepest descent, unless the
 //! model stood there from the start.
 
+mod asked;
 mod descent;
 mod metric;
 mod outcome;
@@ -47,6 +48,7 @@ use crate::scalar::Dual;
 use crate::scene::layout::Layout;
 use crate::scene::programs::{record_more, record_moving};
 use crate::scene::slopes::WIDTH;
+use asked::Asked;
 use nalgebra::DMatrix;
 use point::Point;
 
@@ -124,6 +126,8 @@ pub enum NoEquilibrium {
 struct Settler<'a> {
     system: &'a mut System,
     settings: &'a Settings,
+    /// the caller, who may want to stop
+    asked: Asked<'a>,
     /// loads with multipliers | row values | e
     program: Program,
     /// which of them change along which coordinates and states, once it has been asked for
@@ -155,19 +159,20 @@ pub fn settle(
     watch: &mut dyn Watch,
     stats: &mut Stats,
 ) -> Result<Equilibrium, NoEquilibrium> {
-    if watch.interrupted() {
+    let mut asked = Asked::new(watch);
+    if asked.stops() {
         return Err(NoEquilibrium::Interrupted);
     }
-    let mut settler = Settler::new(system, settings)?;
+    let mut settler = Settler::new(system, settings, asked)?;
     let moving = settler.moving.take();
     let begin = settler.system.numbers.clone();
-    let mut found = settler.run(watch);
+    let mut found = settler.run();
     // most states that integrate velocities only count: they are wound up where nothing else holds
     // the load
     if moving.is_some() && matches!(found, Err(NoEquilibrium::Unbalanced(..))) {
         let end = std::mem::replace(&mut settler.system.numbers, begin);
         settler.moving = moving;
-        match settler.run(watch) {
+        match settler.run() {
             Err(NoEquilibrium::Unbalanced(_)) => settler.system.numbers = end,
             other => found = other,
         }
@@ -181,7 +186,11 @@ pub fn settle(
 }
 
 impl<'a> Settler<'a> {
-    fn new(system: &'a mut System, settings: &'a Settings) -> Result<Self, NoEquilibrium> {
+    fn new(
+        system: &'a mut System,
+        settings: &'a Settings,
+        asked: Asked<'a>,
+    ) -> Result<Self, NoEquilibrium> {
         let scene = system.configured();
         let rows: Vec<usize> = scene.configuration.active_rows().collect();
         let states: Vec<usize> = (scene.differentials.iter())
@@ -222,6 +231,7 @@ impl<'a> Settler<'a> {
             factorizations: 0,
             system,
             settings,
+            asked,
         })
     }
 
@@ -229,7 +239,17 @@ impl<'a> Settler<'a> {
         self.system.scene.layout.n_v
     }
 
-    fn run(&mut self, watch: &mut dyn Watch) -> Result<Equilibrium, NoEquilibrium> {
+    /// Descends from where the system stands, past saddles, to an equilibrium.
+    fn run(&mut self) -> Result<Equilibrium, NoEquilibrium> {
+        let found = self.descend_past_saddles();
+        // what came of a search that ended early says nothing
+        if self.asked.stops() {
+            return Err(NoEquilibrium::Interrupted);
+        }
+        found
+    }
+
+    fn descend_past_saddles(&mut self) -> Result<Equilibrium, NoEquilibrium> {
         let l = self.system.scene.layout;
         let mut start = self.system.numbers.clone();
         start[l.v()].fill(0.0);
@@ -239,7 +259,7 @@ impl<'a> Settler<'a> {
         let mut iterations = 0;
         loop {
             let stood = iterations == 0;
-            let (outcome, jacobian) = self.descend(&mut p, &mut iterations, watch);
+            let (outcome, jacobian) = self.descend(&mut p, &mut iterations);
             self.keep(&p);
             outcome?;
             let stood = stood && iterations == 0;

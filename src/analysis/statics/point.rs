@@ -31,6 +31,7 @@ impl Settler<'_> {
         input.resize(numbers.len() + m, 0.0);
         let mut out = vec![0.0; self.program.n_outputs()];
         self.program.run(&input, &mut self.work, &mut out);
+        self.asked.go_on()?;
         if out.iter().any(|x| !x.is_finite()) {
             return None;
         }
@@ -43,6 +44,7 @@ impl Settler<'_> {
             }
         }
         let metric = Metric::new(&scene, at.mass_rows())?;
+        self.asked.go_on()?;
         let rows = Rows::new(gradient, &metric);
         let f = DVector::from_column_slice(&out[..n]);
         let state = DVector::from_column_slice(&out[n + m..]);

@@ -95,20 +95,30 @@ impl Small {
 
 impl Settler<'_> {
     /// Finds the answers to a push.
-    pub(super) fn stability(&self, p: &Point, jacobian: &DMatrix<f64>) -> Answers {
+    pub(super) fn stability(&mut self, p: &Point, jacobian: &DMatrix<f64>) -> Answers {
         let (n, d) = (self.n_v(), self.states.len());
         let mut answers = Answers {
             stability: Stability::default(),
             descent: None,
             has_potential: true,
-            small: Small::at(p, n),
+            small: None,
         };
+        if self.asked.stops() {
+            return answers;
+        }
+        answers.small = Small::at(p, n);
+        if self.asked.stops() {
+            return answers;
+        }
         let Some(small) = &answers.small else {
             return answers;
         };
         let Some(reduced) = small.reduced(&-self.stiffness(jacobian)) else {
             return answers;
         };
+        if self.asked.stops() {
+            return answers;
+        }
         let symmetric = (&reduced + reduced.transpose()) * 0.5;
         let eigen = symmetric.symmetric_eigen();
         answers.has_potential = asymmetry(&reduced) < ASYMMETRY;

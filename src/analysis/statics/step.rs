@@ -79,6 +79,7 @@ impl Settler<'_> {
         mut rhs: Vec<f64>,
         downhill: bool,
     ) -> Option<DVector<f64>> {
+        self.asked.go_on()?;
         self.factorizations += 1;
         let (n, m, d) = (self.n_v(), self.rows.len(), self.states.len());
         let size = n + d + m;
@@ -106,16 +107,18 @@ impl Settler<'_> {
                 a[(n + d + i, j)] = *g;
             }
         }
+        self.asked.go_on()?;
         rhs.resize(size, 0.0);
         let mut upright = true;
         let mut is_symmetric = false;
         if downhill {
             let stiffness = a.view((0, 0), (n, n)).into_owned();
             upright = goes_down(&stiffness, &p.rows.gradient);
+            self.asked.go_on()?;
             is_symmetric = !upright && d == 0 && asymmetry(&stiffness) < 1e-3;
         }
-        let lu = &mut self.lu;
-        lu.factor(1e-15).ok()?;
+        let (lu, asked) = (&mut self.lu, &mut self.asked);
+        lu.factor_while(1e-15, &mut || !asked.stops()).ok()?;
         if !upright && (is_symmetric || !lu.positive()) {
             return None;
         }
@@ -206,6 +209,7 @@ impl Settler<'_> {
             numbers = self.moved(p, &step)?;
         }
         let next = self.point(&numbers)?;
+        self.asked.go_on()?;
         let change = jacobian * &step;
         let foretold = DVector::from_iterator(n, (0..n).map(|i| p.force[i] + change[i]));
         let (_, foretold) = p.rows.balanced(&foretold);

@@ -26,6 +26,21 @@ impl System {
             .sense(sensors, &mut self.numbers, switched)
     }
 
+    /// Returns the sensors that are triggered where a method begins, by the branches that hold from
+    /// there on; SENVAL is new then.
+    pub fn sense_beginning(&mut self, t: f64, y: &[f64]) -> Vec<usize> {
+        if self.recorded.sensors.is_empty() {
+            return Vec::new();
+        }
+        self.set(t, y);
+        let mut beyond = Vec::new();
+        if !(self.recorded.branches).beyond_sensors(&self.numbers, &mut beyond) {
+            return Vec::new();
+        }
+        let sensors = &self.scene.sensors;
+        (self.recorded.sensors).pass(sensors, &mut self.numbers, beyond)
+    }
+
     /// Evaluates by how much the expressions of sensors are beyond their values   (n_sensors)
     pub fn beyond_sensors(&mut self, t: f64, y: &[f64], values: &mut Vec<f64>) {
         self.set(t, y);
@@ -35,9 +50,19 @@ impl System {
 
     /// Returns whether a sensor that waits for its value passes it between two such evaluations.
     pub fn passes_sensor(&self, before: &[f64], after: &[f64]) -> bool {
-        self.recorded
-            .sensors
-            .passes(&self.scene.sensors, before, after)
+        let sensors = &self.recorded.sensors;
+        let mut passed = sensors.passed(&self.scene.sensors, before, after);
+        passed.next().is_some()
+    }
+
+    /// Returns the sensors that have passed their values at a state, by such evaluations before it
+    /// and there; SENVAL is new then.
+    pub fn sense_passed(&mut self, t: f64, y: &[f64], before: &[f64], there: &[f64]) -> Vec<usize> {
+        self.set(t, y);
+        let all = &self.scene.sensors;
+        let passed: Vec<usize> = self.recorded.sensors.passed(all, before, there).collect();
+        (self.recorded.sensors).take(all, &mut self.numbers, &passed);
+        passed
     }
 
     /// Goes on as the last simulation left the samples, or takes the first ones here.

@@ -26,6 +26,7 @@ pub struct Branches {
     switch_work: Work,
     unknown_work: Work,
     pub(super) held_work: Work,
+    sensor_work: Work,
     /// the numbers, then what the switches read after them: unknowns of loops, then sides
     pub(super) numbers: Vec<f64>,
     /// loops with branches held, solved in that row
@@ -71,6 +72,7 @@ impl Branches {
             switch_work: Work::default(),
             unknown_work: Work::default(),
             held_work: Work::default(),
+            sensor_work: Work::default(),
             numbers: Vec::new(),
             holding: false,
             sides: vec![0.0; n],
@@ -95,6 +97,23 @@ impl Branches {
     /// Returns whether branches can be held.
     pub fn can_hold(&self) -> bool {
         self.held_rate().is_some()
+    }
+
+    /// Evaluates for each sensor whether what it watches is beyond its value on the branches that
+    /// are held (0, 1); returns false where none are, or nobody can tell   (n_sensors)
+    pub(super) fn beyond_sensors(&mut self, numbers: &[f64], beyond: &mut Vec<f64>) -> bool {
+        let held = |switching: &Switching| switching.held_sensors.is_some();
+        let can = self.holding && self.switching.as_ref().is_some_and(held);
+        if !can || self.with_sides(numbers).is_none() {
+            return false;
+        }
+        let switching = self.switching.as_ref();
+        let Some(program) = switching.and_then(|s| s.held_sensors.as_ref()) else {
+            return false;
+        };
+        beyond.resize(program.n_outputs(), 0.0);
+        program.run(&self.numbers, &mut self.sensor_work, beyond);
+        true
     }
 
     /// Returns the sides of the switches, whether or not branches are held   (n_switches)

@@ -91,6 +91,9 @@ fn residual<S: Scalar>(
     out
 }
 
+/// Loops that are named where no method for implicit equations can solve them.
+const MOST_NAMED: usize = 3;
+
 impl Implicit {
     /// Records the equations of a scene.
     ///
@@ -102,11 +105,16 @@ impl Implicit {
         (outside, switching): (&Closures, Option<&Switching>),
     ) -> Result<Self, Vec<Diagnostic>> {
         if !scene.loops.is_empty() {
-            let loops: Vec<String> = scene.loops.iter().map(|u| u.asker.to_string()).collect();
+            let loops = scene.loops.iter().take(MOST_NAMED);
+            let loops: Vec<String> = loops.map(|u| u.asker.to_string()).collect();
+            let more = match scene.loops.len() - loops.len() {
+                0 => String::new(),
+                n => format!(" (and each of {n} more)"),
+            };
             return Err(vec![Diagnostic::error(
                 "implicit_loop",
                 format!(
-                    "{} reads accelerations or forces that depend on it: methods for implicit equations do not solve that",
+                    "{}{more} reads accelerations or forces that depend on it: methods for implicit equations do not solve that",
                     loops.join(", ")
                 ),
             )

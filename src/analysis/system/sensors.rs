@@ -5,9 +5,11 @@
 //! ```
 //!
 //! The instant at which e passes VALUE is located like every switch, so it does not depend on steps
-//! or on ERROR; within ERROR of VALUE an expression counts as there (one that turns back just
-//! before it, too). A sensor that holds at the start of a simulation evaluates its EVALUATE there,
-//! and acts only after it has not held once.
+//! or on ERROR. Where a switch is located, the branches on which the motion goes on decide what e
+//! does from there on: it may jump there, or be short of VALUE by rounding. Within ERROR of VALUE
+//! an expression counts as there (one that turns back just before it, too). A sensor that holds at
+//! the start of a simulation evaluates its EVALUATE there, and acts only after it has not held
+//! once.
 
 use super::recording::Recording;
 use crate::model::Comparison;
@@ -27,10 +29,13 @@ pub struct Sensors {
     armed: Vec<bool>,
     /// places of SENVAL in the row of numbers   (n)
     places: Vec<usize>,
+    /// whether each expression was beyond its value (0, 1) on the branches on which a method began
+    /// last   (n, empty: not known)
+    beyond: Vec<f64>,
 }
 
 /// Returns by how much an expression is beyond the value of a sensor.
-fn beyond(s: &SceneSensor, e: f64) -> f64 {
+fn beyond_value(s: &SceneSensor, e: f64) -> f64 {
     let beyond = e - s.value;
     if s.angular {
         (beyond + PI).rem_euclid(TAU) - PI
@@ -41,7 +46,7 @@ fn beyond(s: &SceneSensor, e: f64) -> f64 {
 
 /// Returns whether a sensor holds; `near`: a value within ERROR counts.
 fn holds(s: &SceneSensor, e: f64, near: bool) -> bool {
-    let beyond = beyond(s, e);
+    let beyond = beyond_value(s, e);
     let slack = if near { s.error } else { 0.0 };
     match s.comparison {
         Comparison::Equal => beyond.abs() <= s.error,
@@ -78,6 +83,7 @@ impl Sensors {
             recording: Some(Recording::new(program)),
             armed: vec![false; n],
             places: (0..n).map(place).collect(),
+            beyond: Vec::new(),
         })
     }
 
@@ -90,6 +96,7 @@ impl Sensors {
     /// its SENVAL.
     pub(super) fn begin(&mut self, sensors: &[SceneSensor], numbers: &mut [f64]) {
         self.look(numbers);
+        self.beyond.clear();
         for (k, sensor) in sensors.iter().enumerate() {
             let here = holds(sensor, self.values()[k], false);
             self.armed[k] = !here;
@@ -129,6 +136,41 @@ impl Sensors {
         triggered
     }
 
+    /// Returns the sensors that are triggered where a method begins, as what they watch goes on
+    /// `beyond` its value (0, 1; on the branches that hold from there on) or no more; SENVAL is new
+    /// then. There the expression may have its value itself, be short of it by rounding, or jump.
+    pub(super) fn pass(
+        &mut self,
+        sensors: &[SceneSensor],
+        numbers: &mut [f64],
+        beyond: Vec<f64>,
+    ) -> Vec<usize> {
+        self.look(numbers);
+        let before = std::mem::replace(&mut self.beyond, beyond);
+        let mut triggered = Vec::new();
+        for (k, sensor) in sensors.iter().enumerate() {
+            let is_beyond = self.beyond[k] > 0.0;
+            let passes = match sensor.comparison {
+                Comparison::GreaterOrEqual => is_beyond,
+                Comparison::LessOrEqual => !is_beyond,
+                // the sine of an angle changes its sign at half a turn, too
+                Comparison::Equal => {
+                    let was_beyond = before.get(k).map(|&b| b > 0.0);
+                    let is_half_a_turn = || beyond_value(sensor, self.values()[k]).abs() > PI / 2.0;
+                    was_beyond == Some(!is_beyond) && !(sensor.angular && is_half_a_turn())
+                }
+            };
+            let has_value = self.values()[k].is_finite();
+            if passes && has_value && std::mem::replace(&mut self.armed[k], false) {
+                triggered.push(k);
+            }
+        }
+        for &k in &triggered {
+            self.yield_value(k, &sensors[k], numbers);
+        }
+        triggered
+    }
+
     /// Evaluates by how much the expressions are beyond the values of the sensors   (n)
     pub(super) fn beyond(
         &mut self,
@@ -139,27 +181,38 @@ impl Sensors {
         self.look(numbers);
         values.clear();
         let expressions = sensors.iter().zip(self.values());
-        values.extend(expressions.map(|(sensor, &e)| beyond(sensor, e)));
+        values.extend(expressions.map(|(sensor, &e)| beyond_value(sensor, e)));
     }
 
-    /// Returns whether a sensor that waits for its value passes it between two evaluations of
+    /// Returns the sensors that wait for their values and pass them between two evaluations of
     /// [`beyond`](Self::beyond).
-    pub(super) fn passes(&self, sensors: &[SceneSensor], before: &[f64], after: &[f64]) -> bool {
+    pub(super) fn passed(
+        &self,
+        sensors: &[SceneSensor],
+        before: &[f64],
+        after: &[f64],
+    ) -> impl Iterator<Item = usize> {
         let ends = before.iter().zip(after);
-        sensors
-            .iter()
-            .zip(&self.armed)
-            .zip(ends)
-            .any(|((s, &armed), (&a, &b))| {
-                // an angle passes half a turn without passing its value
-                let around = s.angular && (a - b).abs() > PI;
-                let passes = match s.comparison {
-                    Comparison::Equal => a < 0.0 && b >= 0.0 || a > 0.0 && b <= 0.0,
-                    Comparison::GreaterOrEqual => a < 0.0 && b >= 0.0,
-                    Comparison::LessOrEqual => a > 0.0 && b <= 0.0,
-                };
-                armed && passes && !around
-            })
+        let all = sensors.iter().zip(&self.armed).zip(ends).enumerate();
+        all.filter_map(|(k, ((s, &armed), (&a, &b)))| {
+            // an angle passes half a turn without passing its value
+            let around = s.angular && (a - b).abs() > PI;
+            let passes = match s.comparison {
+                Comparison::Equal => a < 0.0 && b >= 0.0 || a > 0.0 && b <= 0.0,
+                Comparison::GreaterOrEqual => a < 0.0 && b >= 0.0,
+                Comparison::LessOrEqual => a > 0.0 && b <= 0.0,
+            };
+            (armed && passes && !around).then_some(k)
+        })
+    }
+
+    /// Takes these sensors as triggered at a state; SENVAL is new then.
+    pub(super) fn take(&mut self, sensors: &[SceneSensor], numbers: &mut [f64], which: &[usize]) {
+        self.look(numbers);
+        for &k in which {
+            self.armed[k] = false;
+            self.yield_value(k, &sensors[k], numbers);
+        }
     }
 
     fn look(&mut self, numbers: &[f64]) {

@@ -102,7 +102,18 @@ impl Followed {
         near: bool,
         out: &mut Trajectory,
     ) -> Result<(), Ended> {
-        let asked = trigger(system, at, near, out)?;
+        self.trigger_with(system, at, (near, Vec::new()), out)
+    }
+
+    /// Does the same for sensors that have passed their values there as well.
+    fn trigger_with(
+        &mut self,
+        system: &mut System,
+        at: (f64, &[f64]),
+        (near, passed): (bool, Vec<usize>),
+        out: &mut Trajectory,
+    ) -> Result<(), Ended> {
+        let asked = trigger(system, at, (near, passed), out)?;
         self.every = asked.dt.map(|dt| (at.0, dt)).or(self.every);
         self.stepsize = asked.stepsize.or(self.stepsize);
         Ok(())
@@ -150,9 +161,14 @@ impl Followed {
             }
             system.beyond_sensors(at, &there, &mut self.after);
         }
+        // an expression may jump over its value, or be off it by rounding
+        let passed = match located {
+            true => system.sense_passed(at, &there, &self.before, &self.after),
+            false => Vec::new(),
+        };
         std::mem::swap(&mut self.before, &mut self.after);
         self.t = at;
-        self.trigger(system, (at, &there), located, out)
+        self.trigger_with(system, (at, &there), (located, passed), out)
     }
 }
 
@@ -166,18 +182,21 @@ struct Asked {
 }
 
 /// Does what the sensors ask for that are triggered at a state; returns the distances that they ask
-/// for. `near`: a value within ERROR counts.
+/// for. `near`: a value within ERROR counts; `passed`: those that are known to be.
 ///
 /// # Errors
 /// One of them ends the simulation.
 fn trigger(
     system: &mut System,
     (t, y): (f64, &[f64]),
-    near: bool,
+    (near, passed): (bool, Vec<usize>),
     out: &mut Trajectory,
 ) -> Result<Asked, Ended> {
     let mut asked = Asked::default();
-    for k in system.sense(t, y, near) {
+    let mut triggered = passed;
+    triggered.extend(system.sense(t, y, near));
+    triggered.sort_unstable();
+    for k in triggered {
         let sensor = &system.scene.sensors[k];
         let ends = sensor.halt || sensor.end_simulation;
         asked.dt = sensor.dt.or(asked.dt);

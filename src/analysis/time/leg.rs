@@ -220,6 +220,9 @@ impl<'a> Leg<'a> {
         self.switches.start(self.system, t, y);
         method.start(self.system, t, y)?;
         self.look_ahead(method)?;
+        if let Some(h) = self.sense_beginning(method)? {
+            method.propose(h);
+        }
         self.begin_peaks(method);
         self.downstream_begins_anew();
         self.system.take_weak();
@@ -451,12 +454,23 @@ impl<'a> Leg<'a> {
         step: &Step,
         switched: bool,
     ) -> Result<(bool, Option<f64>), Finished> {
+        let triggered = self.system.sense(step.t1, method.y(), switched);
+        self.react_to(&triggered, method, step.t1)
+    }
+
+    /// Does what triggered sensors ask for at a time; returns as [`sense`](Self::sense) does.
+    fn react_to(
+        &mut self,
+        triggered: &[usize],
+        method: &dyn Method<System>,
+        t: f64,
+    ) -> Result<(bool, Option<f64>), Finished> {
         let (mut reacted, mut stepsize) = (false, None);
-        for k in self.system.sense(step.t1, method.y(), switched) {
+        for &k in triggered {
             if let Some(h) = self.system.scene.sensors[k].stepsize {
                 stepsize = Some(stepsize.map_or(h, |other: f64| other.min(h)));
             }
-            reacted |= self.react(k, method, step.t1)?;
+            reacted |= self.react(k, method, t)?;
         }
         Ok((reacted, stepsize))
     }
@@ -506,6 +520,7 @@ impl<'a> Leg<'a> {
         }
         method.reinitialize(self.system, anew, &state)?;
         self.look_ahead(method)?;
+        let stepsize = self.sense_beginning(method)?.or(stepsize);
         self.begin_peaks(method);
         self.downstream_begins_anew();
         // after the method has begun anew, which chooses a step of its own
@@ -513,6 +528,22 @@ impl<'a> Leg<'a> {
             method.propose(h);
         }
         Ok(())
+    }
+
+    /// Does what sensors ask for that are triggered by the branches on which a method begins;
+    /// returns the step that they ask for.
+    fn sense_beginning(
+        &mut self,
+        method: &mut dyn Method<System>,
+    ) -> Result<Option<f64>, Finished> {
+        let (t, y) = (method.t(), method.y().to_vec());
+        let triggered = self.system.sense_beginning(t, &y);
+        let (reacted, stepsize) = self.react_to(&triggered, method, t)?;
+        if reacted {
+            method.reinitialize(self.system, t, &y)?;
+            self.look_ahead(method)?;
+        }
+        Ok(stepsize)
     }
 
     /// Looks ahead where a method begins, and lets it begin again when the branches turn out to be

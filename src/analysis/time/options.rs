@@ -5,7 +5,8 @@ use crate::numeric::{self, Method, Ode};
 use crate::scene::layout::Layout;
 
 /// Shortest step, as a part of the duration of the run: what needs a shorter one comes no further.
-const SHORTEST_STEP: f64 = 1e-18;
+/// A transient of 1 ns at the beginning of 30 years, followed to 1e-9, begins with one of 1e-27.
+const SHORTEST_STEP: f64 = 1e-30;
 
 /// Options of an integration.
 #[derive(Clone, Debug)]
