@@ -124,10 +124,11 @@ pub fn run(args: &Args) -> Outcome {
     if !args.quiet {
         remark_on_loads(&job);
     }
+    let is_as_read = job.is_as_read();
     let (model, dataset, steps) = (job.reading.model, job.reading.dataset, job.steps);
     check_columns(args, &model, &steps)?;
     let name = args.name.as_ref().unwrap_or(&job.base);
-    let mut session = open(args, model, name);
+    let mut session = open(args, (model, is_as_read), name);
     let seconds = &mut session.run.record.seconds;
     seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;
@@ -347,7 +348,7 @@ fn check_columns(args: &Args, model: &Model, steps: &[Step]) -> Result<(), Failu
 }
 
 /// Opens the session of a model, with the options of the command line.
-fn open(args: &Args, model: Model, base: &str) -> Session {
+fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session {
     // formats for everything that was solved
     let complete = [Format::Res, Format::Parquet];
     let full = model.settings.contains_key(&SettingsStatement::Results)
@@ -368,6 +369,9 @@ fn open(args: &Args, model: Model, base: &str) -> Session {
     let options = args.integration.given_to(options);
     let options = args.limits.given_to(args.unsolved.given_to(options));
     let mut session = Session::new(model, base, options);
+    if is_as_read {
+        session.was_read();
+    }
     session.run.record.model = args.model.display().to_string();
     let folder = args.model.parent().map(Path::to_path_buf);
     session.folders = args.out.clone().into_iter().chain(folder).collect();
@@ -414,6 +418,13 @@ pub(super) struct Job {
     pub remarks: Vec<Diagnostic>,
     /// time that the bytes of the dataset took, in s
     pub read_seconds: f64,
+}
+
+impl Job {
+    /// Returns whether the model is that of the dataset: a file beside it may change it.
+    fn is_as_read(&self) -> bool {
+        self.setup.text.is_empty() && self.loads.is_none() && !self.reading.failed()
+    }
 }
 
 /// Returns the exit of a status.
