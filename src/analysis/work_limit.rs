@@ -211,11 +211,11 @@ mod tests {
     fn work_of_a_millisecond_is_told() {
         let told = thread_seconds(None).is_some();
         for _ in 0..20 {
-            let (clock, process) = (ProcessorClock::start(), ProcessClock::start());
+            // a clock of the process would see the threads of other tests end
+            let clock = ProcessorClock::start();
             let moment = Moment::now();
             while moment.elapsed() < Duration::from_millis(1) {}
-            let used = [clock.seconds(), process.seconds()];
-            assert!(!told || used.iter().all(|&s| s > 0.0), "{used:?}");
+            assert!(!told || clock.seconds() > 0.0);
         }
     }
 
