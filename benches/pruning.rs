@@ -1,6 +1,6 @@
 //! The cost of what a scene does not need: a pendulum, and the same pendulum with a thousand elements that do not matter to it.
 //!
-//! `cargo bench --bench pruning`. For each kind of ballast: operations of an evaluation of the rates beside those of the bare pendulum
+//! `cargo bench --bench pruning`, or `cargo bench --bench pruning -- 10` with another number of elements. For each kind of ballast: operations of an evaluation of the rates beside those of the bare pendulum
 //! (goal: within 1 %), the time that an element of ballast adds to a whole `cognate run` (goal: 2 µs), and whether the pendulum's
 //! columns are the same to the bit.
 
@@ -8,8 +8,8 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-/// Elements of ballast.
-const N: usize = 1000;
+/// Elements of ballast, where the command line says nothing else.
+const ELEMENTS: usize = 1000;
 /// Runs of a model, of which the fastest counts.
 const RUNS: usize = 3;
 
@@ -91,7 +91,7 @@ const KINDS: &[Ballast] = &[
         "welded parts",
         |k| {
             format!(
-                "PART/{p}\nMARKER/{m}, PART={p}\nJOINT/{p}, FIXED, I={m}, J=20",
+                "PART/{p}, QG=1,0,0\nMARKER/{m}, PART={p}\nJOINT/{p}, FIXED, I={m}, J=20",
                 p = 10 + k,
                 m = 2000 + k
             )
@@ -140,22 +140,24 @@ struct Measured {
 fn main() {
     let folder = std::env::temp_dir().join(format!("cognate-pruning-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder for models");
+    let asked = std::env::args().skip(1).find_map(|a| a.parse().ok());
+    let n: usize = asked.unwrap_or(ELEMENTS);
     let bare = measured(&folder, "", "");
     println!(
         "{:24}{:>12}{:>14}{:>16}{:>12}",
-        format!("{N} of each"),
+        format!("{n} of each"),
         "operations",
         "of the bare",
         "µs an element",
         "same bits"
     );
     for (name, statements, command) in KINDS {
-        let ballast: String = (1..=N).map(|k| statements(k) + "\n").collect();
+        let ballast: String = (1..=n).map(|k| statements(k) + "\n").collect();
         let commands: String =
-            command.map_or(String::new(), |c| (1..=N).map(|k| c(k) + "\n").collect());
+            command.map_or(String::new(), |c| (1..=n).map(|k| c(k) + "\n").collect());
         let with = measured(&folder, &ballast, &commands);
         let ratio = with.operations as f64 / bare.operations as f64;
-        let each = 1e6 * (with.seconds - bare.seconds) / N as f64;
+        let each = 1e6 * (with.seconds - bare.seconds) / n as f64;
         let same = if with.columns == bare.columns {
             "yes"
         } else {

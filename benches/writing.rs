@@ -85,7 +85,8 @@ fn main() {
                 let contents = std::fs::read(&finished.part).expect("the file");
                 let back = reader(&contents).expect("the table");
                 read.push(clock.elapsed().as_secs_f64());
-                assert_eq!(back.rows(), run.rows());
+                // a `.gra` file of a run that has no model as it was read makes one of its first row
+                assert_eq!(back.table_rows().count(), run.table_rows().count());
             }
             std::fs::remove_file(finished.part).expect("the file");
         }

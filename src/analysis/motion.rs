@@ -15,12 +15,13 @@ use super::session::columns::{name_of, unit_of};
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::Input;
-use crate::model::{ElementId, ElementKind, Model, Text, geometry};
+use crate::model::{ElementId, ElementKind, Model, Orientation, Text, geometry};
 use crate::physics::kinematic;
 use crate::results::{Column, Run, digest};
 use crate::space::{Frame, MarkerState, Vec3, rotation};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
+use std::fmt::Write;
 
 /// Components of the sets of six functions, level by level.
 const SETS: [[&str; 6]; 3] = [
@@ -233,10 +234,59 @@ impl<'a> Recorded<'a> {
 /// Returns a text that two models have in common where their markers are fixed alike in the same
 /// parts: 16 hexadecimal digits.
 pub fn marker_digest(model: &Model) -> String {
-    let text = model.markers.iter().map(|(number, marker)| {
-        let (owner, floating) = (marker.owner, marker.floating);
-        let (qp, orientation) = (marker.qp, marker.orientation);
-        format!("{number} {owner:?} {qp:?} {orientation:?} {floating}\n")
-    });
-    digest(text.flat_map(String::into_bytes))
+    let mut text = String::new();
+    for (number, marker) in &model.markers {
+        // writing to a text cannot fail
+        let _ = write!(text, "{number} {:?} ", marker.owner);
+        push_numbers(&mut text, marker.qp);
+        match marker.orientation {
+            Orientation::Euler(angles) => {
+                text.push_str(" Euler(");
+                push_numbers(&mut text, angles);
+                text.push(')');
+            }
+            other => {
+                let _ = write!(text, " {other:?}");
+            }
+        }
+        text.push_str(if marker.floating {
+            " true\n"
+        } else {
+            " false\n"
+        });
+    }
+    digest(text.bytes())
+}
+
+/// Appends numbers as `{:?}` does; small whole ones, which most are, without its work.
+fn push_numbers(text: &mut String, numbers: [f64; 3]) {
+    const SMALL: f64 = 1e5;
+    text.push('[');
+    for (k, x) in numbers.into_iter().enumerate() {
+        text.push_str(if k > 0 { ", " } else { "" });
+        let whole = x as i32;
+        let _ = match x.abs() < SMALL && f64::from(whole).to_bits() == x.to_bits() {
+            true => write!(text, "{whole}.0"),
+            false => write!(text, "{x:?}"),
+        };
+    }
+    text.push(']');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Records of earlier versions name the same models.
+        #[test]
+        fn numbers_of_a_digest_are_those_of_debug(x: f64, whole in -200_000i32..200_000, y in -2.0..2.0) {
+            for numbers in [[x, f64::from(whole), y], [-0.0, 0.0, -x], [0.5 * f64::from(whole), f64::NAN, 1e5]] {
+                let mut text = String::new();
+                push_numbers(&mut text, numbers);
+                prop_assert_eq!(text, format!("{numbers:?}"));
+            }
+        }
+    }
 }

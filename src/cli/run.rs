@@ -125,10 +125,11 @@ pub fn run(args: &Args) -> Outcome {
     if !args.quiet {
         remark_on_loads(&job);
     }
+    let is_as_read = job.is_as_read();
     let (model, dataset, steps) = (job.reading.model, job.reading.dataset, job.steps);
     check_columns(args, &model, &steps)?;
     let name = args.name.as_ref().unwrap_or(&job.base);
-    let mut session = open(args, model, name);
+    let mut session = open(args, (model, is_as_read), name);
     let seconds = &mut session.run.record.seconds;
     seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;
@@ -314,7 +315,7 @@ fn check_columns(args: &Args, model: &Model, steps: &[Step]) -> Result<(), Failu
 }
 
 /// Opens the session of a model, with the options of the command line.
-fn open(args: &Args, model: Model, base: &str) -> Session {
+fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session {
     // formats for everything that was solved
     let complete = [Format::Res, Format::Parquet];
     let full = model.settings.contains_key(&SettingsStatement::Results)
@@ -335,6 +336,9 @@ fn open(args: &Args, model: Model, base: &str) -> Session {
     let options = args.integration.given_to(options);
     let options = args.limits.given_to(args.unsolved.given_to(options));
     let mut session = Session::new(model, base, options);
+    if is_as_read {
+        session.was_read();
+    }
     session.run.record.model = args.model.display().to_string();
     let folder = args.model.parent().map(Path::to_path_buf);
     session.folders = args.out.clone().into_iter().chain(folder).collect();
@@ -388,6 +392,11 @@ impl Job {
     pub fn changes_the_model(&self) -> bool {
         let changes = |s: &Step| matches!(s.command, Command::Change(_) | Command::Activate { .. });
         self.steps.iter().any(changes)
+    }
+
+    /// Returns whether the model is that of the dataset: a file beside it may change it.
+    fn is_as_read(&self) -> bool {
+        self.setup.text.is_empty() && self.loads.is_none() && !self.reading.failed()
     }
 }
 

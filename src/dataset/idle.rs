@@ -1,6 +1,6 @@
 //! Statements and arguments that are accepted and change nothing, told once for a file.
 
-use super::row::{Record, canonical};
+use super::row::{Argument, Record, canonical};
 use super::syntax::Source;
 use crate::diagnostic::{Diagnostic, Severity};
 
@@ -11,13 +11,18 @@ pub(super) struct Idle {
     found: Vec<(String, Vec<String>)>,
     /// place of the first
     first: Option<crate::diagnostic::Span>,
+    /// keyword and arguments of the row of the last record
+    row: Option<(&'static str, Vec<Argument>)>,
 }
 
 impl Idle {
     /// Adds whatever of a record changes nothing.
     pub(super) fn add(&mut self, record: &Record) {
-        let keyword = canonical(record.row.keyword());
-        let arguments = record.row.arguments();
+        let row = record.row.keyword();
+        if self.row.as_ref().is_none_or(|(known, _)| *known != row) {
+            self.row = Some((row, record.row.arguments()));
+        }
+        let arguments = self.row.as_ref().map_or(&[][..], |(_, all)| all);
         let idle = |g: &super::row::Given| arguments.get(g.argument).filter(|a| a.idle);
         let mut words: Vec<String> = record
             .given
@@ -38,6 +43,7 @@ impl Idle {
             return;
         }
         self.first.get_or_insert(record.head);
+        let keyword = canonical(record.row.keyword());
         let at = match self.found.iter().position(|(k, _)| *k == keyword) {
             Some(at) => at,
             None => {

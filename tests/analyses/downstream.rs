@@ -7,7 +7,7 @@ use cognate::analysis::linear::Wanted;
 use cognate::analysis::session::state::Saved;
 use cognate::analysis::verify::outline::outline;
 use cognate::model::ElementKind;
-use cognate::results::{Counts, Status};
+use cognate::results::{Counts, Event, Status};
 use running::{
     Analysis, Options, Session, begin, go, last, model, off, options, options_by, rest, session_by,
     try_to, values, whole,
@@ -90,6 +90,41 @@ fn mechanisms() -> Vec<(String, String, u32, f64)> {
         (name.to_string(), text, marker, end)
     });
     of_functions.into_iter().chain(references).collect()
+}
+
+/// What the log tells of the states beside the mechanism: the steps and the method.
+fn beside(s: &Session) -> (usize, String) {
+    let told = s.run.log.iter().find_map(|event| match event {
+        Event::Info(text) => text.split_once(" steps of ").map(|(before, method)| {
+            let steps = before.rsplit(' ').next().and_then(|n| n.parse().ok());
+            (steps.expect("a number of steps"), method.to_owned())
+        }),
+        _ => None,
+    });
+    told.expect("states beside the mechanism")
+}
+
+#[test]
+fn stiff_filters_begin_by_the_implicit_method_however_many_they_are() {
+    let filters = |n: usize| -> String {
+        let one = |k| {
+            format!(
+                "DIFF/{k}, IC=0, FUNCTION=1E{}*(DZ(20,11,11)-DIF({k}))\n",
+                3 + k % 4
+            )
+        };
+        (1..=n).map(one).collect()
+    };
+    let steps = [4, 400].map(|n| {
+        let text = oscillator(3.0, &filters(n));
+        let text = format!("{}{text}END\n", running::GROUND);
+        let s = dynamics(&text, "AUTO", 1.0, false);
+        assert_eq!(s.run.record.status, Status::Completed);
+        let (steps, method) = beside(&s);
+        assert_eq!(method, "RADAU5", "{n} filters");
+        steps
+    });
+    assert!(steps[1] <= steps[0] + steps[0] / 10, "{steps:?}");
 }
 
 /// The work of the mechanism's method, without the evaluations that interpolants take.

@@ -144,7 +144,7 @@ impl Columns {
         this.parts(model, run, selection);
         let mut table = vec![0];
         for text in user {
-            table.push(this.text(run, text.clone(), text, None));
+            table.push(this.text(run, text.clone(), text.as_str().into(), None));
         }
         if !omits(model, Omission::Requests) {
             this.requests(model, run, &mut table, computed);
@@ -173,11 +173,11 @@ impl Columns {
     }
 
     /// Adds the column of an expression; without a `unit` it has that of its measure.
-    fn text(&mut self, run: &mut Run, name: String, text: &str, unit: Option<Unit>) -> usize {
+    fn text(&mut self, run: &mut Run, name: String, text: Text, unit: Option<Unit>) -> usize {
         let k = self.extra.len();
         let known = self.known.get(k).map(|(_, known)| known);
-        let known = known.filter(|known| ***known == *text).cloned();
-        let text = known.unwrap_or_else(|| Text::from(text));
+        let known = known.filter(|known| **known == text).cloned();
+        let text = known.unwrap_or(text);
         let unit = match unit {
             Some(unit) => unit.spelt(&run.units),
             None => unit_of(&text, &run.units),
@@ -317,7 +317,7 @@ impl Columns {
         for Piece { name, unit, source } in pieces {
             let title = format!("{}.{name}", entity.name);
             let column = match source {
-                Source::Text(text) => self.text(run, title, &text, Some(unit)),
+                Source::Text(text) => self.text(run, title, text.into(), Some(unit)),
                 Source::Scene(what) => {
                     let unit = unit.spelt(&run.units);
                     self.push(run, title, unit, what)
@@ -366,7 +366,7 @@ impl Columns {
                     };
                     self.push(run, title, String::new(), what)
                 } else {
-                    self.text(run, title, &component.text, None)
+                    self.text(run, title, component.text, None)
                 };
                 if let Some(last) = self.shown.last_mut() {
                     last.request = Some(set.id);
@@ -421,7 +421,7 @@ impl Columns {
     /// Adds an expression after all other columns, shown by tables.
     pub fn add(&mut self, run: &mut Run, expression: &str) {
         let shown = run.table_columns();
-        let column = self.text(run, expression.to_string(), expression, None);
+        let column = self.text(run, expression.to_string(), expression.into(), None);
         run.table = shown;
         run.table.push(column);
     }

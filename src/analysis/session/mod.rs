@@ -154,6 +154,8 @@ pub struct Session {
     /// whether a first simulation over time begins at a static equilibrium, see
     /// [`Session::simulate_as`]
     pub at_rest_first: bool,
+    /// who read the model has checked it, and nothing has changed it since
+    is_checked: bool,
     /// a sensor ended the run, not only its simulation
     halted: bool,
     /// columns that have gaps
@@ -228,6 +230,7 @@ impl Session {
             saved: std::collections::BTreeMap::new(),
             folders: Vec::new(),
             at_rest_first: false,
+            is_checked: false,
             halted: false,
             gaps: Gaps::default(),
             receiver: None,
@@ -267,8 +270,14 @@ impl Session {
         });
     }
 
+    /// Says that the model is as it was read without errors: it need not be checked again.
+    pub(crate) fn was_read(&mut self) {
+        self.is_checked = true;
+    }
+
     /// Chooses the columns anew after a command has changed the model, while there are no rows.
     fn model_changed(&mut self) {
+        self.is_checked = false;
         if self.carried.is_none() && self.run.rows() == 0 {
             self.choose_columns();
         }

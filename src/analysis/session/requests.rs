@@ -3,7 +3,7 @@
 //! A MREQUEST stands for a REQUEST of each of its elements.
 
 use super::selection::output_says;
-use crate::model::{ElementId, ElementKind, Formula, Model, RequestKind};
+use crate::model::{ElementId, ElementKind, Formula, Model, RequestKind, Text};
 
 /// A component of a REQUEST.
 pub(super) struct RequestComponent {
@@ -11,7 +11,7 @@ pub(super) struct RequestComponent {
     pub place: usize,
     pub name: String,
     /// its expression; empty when a closure computes it
-    pub text: String,
+    pub text: Text,
 }
 
 /// Components of one name, of a REQUEST or of one element of a MREQUEST.
@@ -76,7 +76,7 @@ pub(super) fn components(
                     .map(|(name, place)| RequestComponent {
                         place,
                         name: name.to_string(),
-                        text: format!("{name}({i},{})", j.unwrap_or(0)),
+                        text: format!("{name}({i},{})", j.unwrap_or(0)).into(),
                     }),
             );
             all
@@ -96,22 +96,22 @@ pub(super) fn components(
         }
         RequestKind::Functions(all) => (all.iter().enumerate())
             .filter_map(|(k, f)| match f {
-                Some(Formula::Expression { text, .. }) => Some(function(k + 1, text)),
+                Some(Formula::Expression { text, .. }) => Some(function(k + 1, text.clone())),
                 _ => None,
             })
             .collect(),
         RequestKind::User(user) if computed(set.id.number, user) => {
-            (1..=8).map(|k| function(k, "")).collect()
+            (1..=8).map(|k| function(k, Text::default())).collect()
         }
         RequestKind::User(_) => Vec::new(),
     }
 }
 
-fn function(place: usize, text: &str) -> RequestComponent {
+fn function(place: usize, text: Text) -> RequestComponent {
     RequestComponent {
         place,
         name: format!("F{place}"),
-        text: text.into(),
+        text,
     }
 }
 
@@ -128,10 +128,10 @@ fn measured(
     let mut all = vec![RequestComponent {
         place: first,
         name: magnitude.into(),
-        text: format!("{of_magnitude}({i},{j})"),
+        text: format!("{of_magnitude}({i},{j})").into(),
     }];
     all.extend(measures.iter().zip(first + 1..).map(|(name, place)| {
-        let text = format!("{name}({i},{j},{rm})");
+        let text = format!("{name}({i},{j},{rm})").into();
         let name = name.to_string();
         RequestComponent { place, name, text }
     }));

@@ -84,7 +84,8 @@ impl Session {
         self.columns_program = None;
         // a model that differs in its loads alone from one that was assembled is as right as that
         let before = self.placed_before(mode, inputs);
-        if before.is_none() {
+        let was_checked = std::mem::take(&mut self.is_checked);
+        if before.is_none() && !was_checked {
             self.model.checked()?;
         }
         self.check_closures()?;

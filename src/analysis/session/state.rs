@@ -140,7 +140,7 @@ impl Session {
         self.model = model;
         self.carried = carried;
         (self.kept, self.columns_program, self.companion) = (None, None, None);
-        (self.halted, self.at_rest_first) = (false, false);
+        (self.halted, self.at_rest_first, self.is_checked) = (false, false, false);
         if fresh {
             self.choose_columns();
         }

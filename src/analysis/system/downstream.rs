@@ -133,6 +133,11 @@ impl DownstreamRates {
         (n > DENSE_LIMIT && is_sparse).then(|| Arc::clone(&self.pattern))
     }
 
+    /// Returns the places of the entries that [`Self::jacobian`] yields, however many they are.
+    pub fn entries(&self) -> Arc<Pattern> {
+        Arc::clone(&self.pattern)
+    }
+
     /// Reads the mechanism at a row of numbers, on the branches that are held.
     fn read(&mut self, branches: &mut Branches, numbers: &[f64], reading: &mut Reading) {
         reading.values.clear();

@@ -290,13 +290,13 @@ impl Downstream {
 
     /// Returns whether damped modes are too fast for an explicit method.
     fn is_stiff_at(&self, beside: &mut Beside<'_>, t: f64) -> bool {
-        let n = self.x.len();
-        if n > options::MAX_EIGENVALUES {
+        let Some(rates) = &beside.system.recorded.downstream else {
             return false;
-        }
-        let (mut jacobian, mut dfdt) = (vec![0.0; n * n], vec![0.0; n]);
-        let found = beside.jacobian(t, &self.x, &mut jacobian, &mut dfdt);
-        found.is_ok() && options::is_stiff(n, jacobian, self.duration)
+        };
+        let pattern = rates.entries();
+        let mut entries = vec![0.0; pattern.n_entries()];
+        let found = beside.jacobian_entries(t, &self.x, &mut entries);
+        found.is_ok() && options::is_stiff_in_parts(&pattern, &entries, self.duration)
     }
 
     /// Takes steps until a time is reached or passed, none beyond `t1`.

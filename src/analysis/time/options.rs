@@ -1,6 +1,8 @@
 //! Options of an integration, and the choice of its method.
 
 use crate::analysis::system::System;
+use crate::numeric::connected::strong;
+use crate::numeric::pattern::Pattern;
 use crate::numeric::{self, Method, Ode};
 use crate::scene::layout::Layout;
 
@@ -112,7 +114,7 @@ pub fn method_named(name: &str) -> String {
 /// Steps of an explicit method that stability may force before an implicit one is taken at once.
 const MAX_STABILITY_STEPS: f64 = 2000.0;
 /// Size of the largest system whose eigenvalues are computed for the choice of a method.
-pub(super) const MAX_EIGENVALUES: usize = 120;
+const MAX_EIGENVALUES: usize = 120;
 /// Smallest damping ratio of a mode that counts as damped.
 const LEAST_DAMPING_RATIO: f64 = 0.03;
 
@@ -140,15 +142,81 @@ pub fn first_method(system: &mut System, duration: f64) -> &'static str {
 
 /// Returns whether damped modes of a Jacobian (n × n, by columns) are so fast that stability would
 /// set the steps of an explicit method.
-pub(super) fn is_stiff(n: usize, jacobian: Vec<f64>, duration: f64) -> bool {
+fn is_stiff(n: usize, jacobian: Vec<f64>, duration: f64) -> bool {
+    fastest_damped(n, jacobian) * duration > 5.0 * MAX_STABILITY_STEPS
+}
+
+/// Returns the same of a Jacobian with a pattern, whose strong parts have its eigenvalues: those of
+/// parts that are too large count as slow.
+pub(super) fn is_stiff_in_parts(pattern: &Pattern, entries: &[f64], duration: f64) -> bool {
+    let parts = strong(pattern).into_iter();
+    let fastest = parts
+        .filter(|part| part.len() <= MAX_EIGENVALUES)
+        .map(|part| {
+            let n = part.len();
+            let mut jacobian = vec![0.0; n * n];
+            for (b, &j) in part.iter().enumerate() {
+                for (e, i) in pattern.column(j) {
+                    if let Ok(a) = part.binary_search(&i) {
+                        jacobian[a + n * b] = entries[e];
+                    }
+                }
+            }
+            fastest_damped(n, jacobian)
+        });
+    fastest.fold(0.0, f64::max) * duration > 5.0 * MAX_STABILITY_STEPS
+}
+
+/// Returns the size of the largest eigenvalue of a damped mode; 0 where there is none, or none was
+/// found.
+fn fastest_damped(n: usize, jacobian: Vec<f64>) -> f64 {
+    if let [alone] = jacobian[..] {
+        return (-alone).max(0.0);
+    }
     let matrix = nalgebra::DMatrix::from_vec(n, n, jacobian);
     let Some(schur) = nalgebra::linalg::Schur::try_new(matrix, f64::EPSILON, 1000) else {
-        return false;
+        return 0.0;
     };
-    let fastest = schur
-        .complex_eigenvalues()
+    let all = schur.complex_eigenvalues();
+    let damped = all
         .iter()
-        .filter(|l| -l.re > LEAST_DAMPING_RATIO * l.norm())
-        .fold(0.0, |m: f64, l| m.max(l.norm()));
-    fastest * duration > 5.0 * MAX_STABILITY_STEPS
+        .filter(|l| -l.re > LEAST_DAMPING_RATIO * l.norm());
+    damped.fold(0.0, |m: f64, l| m.max(l.norm()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Pairs that decay by `a` and turn by `b`, each driven by the pairs before it, in any
+        /// order of the unknowns: the fastest one decides, however many there are.
+        #[test]
+        fn the_fastest_strong_part_decides(
+            pairs in proptest::collection::vec((1.0f64..1e6, 0.0f64..1.0, -1e3..1e3), 1..90),
+            turn in 0usize..180,
+            longer: bool,
+        ) {
+            let n = 2 * pairs.len();
+            let place = |k: usize| (k + turn) % n;
+            let mut columns = vec![Vec::new(); n];
+            for (k, &(a, share, driven)) in pairs.iter().enumerate() {
+                let (p, q, b) = (2 * k, 2 * k + 1, share * a);
+                columns[place(p)].extend([(place(p), -a), (place(q), b)]);
+                columns[place(q)].extend([(place(p), -b), (place(q), -a)]);
+                if q + 1 < n {
+                    columns[place(p)].push((place(q + 1), driven));
+                }
+            }
+            columns.iter_mut().for_each(|c| c.sort_by_key(|e| e.0));
+            let places = columns.iter().map(|c| c.iter().map(|e| e.0).collect());
+            let pattern = Pattern::of_columns(n, places.collect());
+            let entries: Vec<f64> = columns.iter().flatten().map(|e| e.1).collect();
+            let fastest = pairs.iter().fold(0.0, |m: f64, &(a, share, _)| m.max(a.hypot(share * a)));
+            let at_limit = 5.0 * MAX_STABILITY_STEPS / fastest;
+            let duration = at_limit * if longer { 1.0 + 1e-9 } else { 1.0 - 1e-9 };
+            prop_assert_eq!(is_stiff_in_parts(&pattern, &entries, duration), longer);
+        }
+    }
 }

@@ -79,7 +79,7 @@ impl Reader<'_> {
                 format!("the expression before {word} does not end with `\\`"),
             );
             let d = d.help("an expression ends with `\\` where another argument follows");
-            let d = self.source.locate(d.element(self.element.clone()), span);
+            let d = self.source.locate(self.about(d), span);
             self.out.push(d);
             return true;
         }

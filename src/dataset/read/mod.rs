@@ -8,7 +8,7 @@ mod formula;
 mod tokens;
 mod values;
 
-use super::row::{Argument, Given, Meaning, Record, Statement, canonical, meaning};
+use super::row::{Argument, Given, Meaning, Record, Statement, canonical, element_name, meaning};
 use super::syntax::{Source, Token, TokenKind, Tokens};
 use super::value::{Kind, Number, Value};
 use crate::diagnostic::{Cause, Diagnostic, Severity, Span, near_names};
@@ -34,12 +34,14 @@ pub fn record(
     let silent = |t: &&Token| !matches!(t.kind, TokenKind::Comment | TokenKind::Carry);
     let mut reader = Reader {
         source,
-        tokens: tokens.tokens.iter().filter(silent).copied().collect(),
+        tokens: Vec::with_capacity(tokens.tokens.len()),
         at: 0,
-        element: String::new(),
+        row: None,
+        id: None,
         arguments: Vec::new(),
         out,
     };
+    reader.tokens.extend(tokens.tokens.iter().filter(silent));
     let mut record = reader.statement(tokens, table)?;
     record.mistaken = out[before..].iter().any(|d| d.severity == Severity::Error);
     Some(record)
@@ -49,7 +51,9 @@ struct Reader<'a> {
     source: &'a Source,
     tokens: Vec<Token>,
     at: usize,
-    element: String,
+    /// the row, once it is known, and then the number
+    row: Option<&'static dyn Statement>,
+    id: Option<u32>,
     arguments: Vec<Argument>,
     out: &'a mut Vec<Diagnostic>,
 }
@@ -81,13 +85,10 @@ impl<'a> Reader<'a> {
             }
         };
         self.at = 1;
-        let keyword = canonical(row.keyword());
-        self.element = keyword.clone();
+        self.row = Some(row);
         let slash = self.take(TokenKind::Slash).is_some();
-        let id = self.identifier(row, &keyword, head, slash)?;
-        if let Some(id) = id {
-            self.element = format!("{keyword}/{id}");
-        }
+        let id = self.identifier(row, head, slash)?;
+        self.id = id;
         let head = Span::new(head.span.start, self.tokens[self.at - 1].span.end);
         self.arguments = row.arguments();
         let mut record = Record {
@@ -110,6 +111,14 @@ impl<'a> Reader<'a> {
         }
         self.exclusions(&record);
         Some(record)
+    }
+
+    /// Says which statement a finding is about, once its row is known.
+    fn about(&self, d: Diagnostic) -> Diagnostic {
+        match self.row {
+            Some(row) => d.element(element_name(&canonical(row.keyword()), self.id)),
+            None => d,
+        }
     }
 
     fn unknown_statement(&mut self, head: Token, table: Table) {
@@ -138,13 +147,8 @@ impl<'a> Reader<'a> {
     }
 
     /// The number after the slash; `None` outside when it is missing where there must be one.
-    fn identifier(
-        &mut self,
-        row: &dyn Statement,
-        keyword: &str,
-        head: Token,
-        slash: bool,
-    ) -> Option<Option<u32>> {
+    fn identifier(&mut self, row: &dyn Statement, head: Token, slash: bool) -> Option<Option<u32>> {
+        let keyword = || canonical(row.keyword());
         let token = self.tokens.get(self.at).copied();
         let digits = token.filter(|t| slash && t.kind == TokenKind::Atom && self.numeric(*t));
         let Some(token) = digits else {
@@ -152,7 +156,7 @@ impl<'a> Reader<'a> {
                 self.error(
                     "missing_identifier",
                     head.span,
-                    format!("{keyword} needs a number: {keyword}/id"),
+                    format!("{0} needs a number: {0}/id", keyword()),
                 );
                 return None;
             }
@@ -163,7 +167,7 @@ impl<'a> Reader<'a> {
             self.error(
                 "unexpected_identifier",
                 token.span,
-                format!("{keyword} takes no number"),
+                format!("{} takes no number", keyword()),
             );
             return Some(None);
         }
@@ -268,7 +272,8 @@ impl<'a> Reader<'a> {
         let word = self.text(name);
         let known: Vec<String> = self.arguments.iter().map(Argument::keyword).collect();
         let near = near_names(word, known.iter().map(String::as_str));
-        let keyword = self.element.split('/').next().unwrap_or_default();
+        let keyword = self.row.map(|row| canonical(row.keyword()));
+        let keyword = keyword.unwrap_or_default();
         let mut d = Diagnostic::error(
             "unknown_argument",
             format!("{keyword} has no argument {word}"),
@@ -281,9 +286,7 @@ impl<'a> Reader<'a> {
         } else {
             d.help(format!("{keyword} has {}", known.join(", ")))
         };
-        let d = self
-            .source
-            .locate(d.element(self.element.clone()), name.span);
+        let d = self.source.locate(self.about(d), name.span);
         self.out.push(d);
         Err(Reported)
     }

@@ -126,6 +126,9 @@ impl<'a> Reader<'a> {
         if self.is_assignment(at) {
             return true;
         }
+        if t.kind != TokenKind::Atom || self.numeric(t) {
+            return false;
+        }
         let alone = self.tokens.get(at + 1).is_none_or(|t| {
             matches!(
                 t.kind,
@@ -133,8 +136,7 @@ impl<'a> Reader<'a> {
             )
         });
         let flag = |k: usize| self.arguments[k].kind == Kind::Flag;
-        t.kind == TokenKind::Atom
-            && alone
+        alone
             && matches!(meaning(self.text(t), self.arguments.iter().map(|a| a.name)), Meaning::One(k) if flag(k))
     }
 
@@ -157,7 +159,7 @@ impl<'a> Reader<'a> {
                 let message = format!("`{}` does not belong to the value before it", self.text(t));
                 let d = Diagnostic::error("unexpected_text", message)
                     .help("arguments are separated by commas");
-                let d = self.source.locate(d.element(self.element.clone()), t.span);
+                let d = self.source.locate(self.about(d), t.span);
                 self.out.push(d);
                 Err(Reported)
             }
@@ -188,16 +190,13 @@ impl<'a> Reader<'a> {
     }
 
     pub(super) fn error(&mut self, code: &'static str, span: Span, message: String) {
-        let mut d = Diagnostic::error(code, message);
-        if !self.element.is_empty() {
-            d = d.element(self.element.clone());
-        }
+        let d = self.about(Diagnostic::error(code, message));
         let d = self.source.locate(d, span);
         self.out.push(d);
     }
 
     pub(super) fn warning(&mut self, code: &'static str, span: Span, message: String) {
-        let d = Diagnostic::warning(code, message).element(self.element.clone());
+        let d = self.about(Diagnostic::warning(code, message));
         let d = self.source.locate(d, span);
         self.out.push(d);
     }

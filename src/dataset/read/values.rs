@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::diagnostic::Cause;
+use std::borrow::Cow;
 
 impl Reader<'_> {
     pub(super) fn value(&mut self, kind: Kind, name: Token) -> Result<Value, Reported> {
@@ -88,11 +89,11 @@ impl Reader<'_> {
     pub(super) fn number(&mut self, angle: bool) -> Result<Number, Reported> {
         let token = self.atom()?;
         let mut span = token.span;
-        let mut text = self.text(token).to_owned();
-        if matches!(text.as_str(), "+" | "-") {
+        let mut text = Cow::Borrowed(self.text(token));
+        if matches!(&*text, "+" | "-") {
             let digits = self.atom()?;
             span.end = digits.span.end;
-            text.push_str(self.text(digits));
+            text += self.text(digits);
         }
         let suffix = self
             .tokens
@@ -101,7 +102,7 @@ impl Reader<'_> {
         if let Some(&suffix) = suffix.filter(|t| self.text(**t).eq_ignore_ascii_case("D")) {
             self.at += 1;
             span.end = suffix.span.end;
-            text.push('D');
+            text += "D";
             self.warning(
                 "blank_before_suffix",
                 span,
@@ -116,7 +117,7 @@ impl Reader<'_> {
                 true => d.help("D is the suffix of degrees; an exponent is written with E"),
                 false => d,
             };
-            let d = self.source.locate(d.element(self.element.clone()), span);
+            let d = self.source.locate(self.about(d), span);
             self.out.push(d);
             return Err(Reported);
         };
@@ -160,7 +161,7 @@ impl Reader<'_> {
             true => d,
             false => d.help(format!("did you mean {}?", near.join(" or "))),
         };
-        let d = self.source.locate(d.element(self.element.clone()), span);
+        let d = self.source.locate(self.about(d), span);
         self.out.push(d);
         Err(Reported)
     }

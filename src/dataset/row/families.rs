@@ -103,7 +103,6 @@ impl<T: Element> Statement for Numbered<T> {
     }
 
     fn enter(&self, model: &mut Model, record: &Record, change: bool) -> Vec<Problem> {
-        let name = record.element();
         let id = record.id.unwrap_or(0);
         let list = (self.list_mut)(model);
         let mut element = match (list.get(&id), change) {
@@ -111,7 +110,7 @@ impl<T: Element> Statement for Numbered<T> {
             (None, true) => {
                 let mut p = Problem::new(
                     Cause::UnknownElement.code(),
-                    format!("{name} does not exist"),
+                    format!("{} does not exist", record.element()),
                 );
                 p.help = near_ids(id, list.keys().copied());
                 return vec![p];

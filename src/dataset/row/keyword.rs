@@ -29,17 +29,27 @@ pub enum Meaning {
 /// shortest form it has.
 pub fn meaning<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Meaning {
     let word = word.as_bytes();
+    let Some(first) = word.first() else {
+        return Meaning::Unknown;
+    };
     let mut begins = Vec::new();
     let mut wins = None;
     for (k, name) in names.enumerate() {
-        for spelling in name.split('|').map(str::as_bytes) {
+        for spelling in name.as_bytes().split(|&b| b == b'|') {
+            // nearly all names begin otherwise
+            if !spelling
+                .first()
+                .is_some_and(|b| b.eq_ignore_ascii_case(first))
+            {
+                continue;
+            }
             if spelling.eq_ignore_ascii_case(word) {
                 return Meaning::One(k);
             }
             let Some(beginning) = spelling.get(..word.len()) else {
                 continue;
             };
-            if beginning.eq_ignore_ascii_case(word) && !word.is_empty() {
+            if beginning.eq_ignore_ascii_case(word) {
                 if begins.last() != Some(&k) {
                     begins.push(k);
                 }

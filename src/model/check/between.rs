@@ -3,6 +3,7 @@
 use super::*;
 use crate::expr::ast::{Callee, Node};
 use crate::expr::measures::Measure;
+use std::cell::LazyCell;
 
 /// Elements that act, by a marker that they name.
 struct Acting<'m> {
@@ -76,7 +77,7 @@ impl<'m> Acting<'m> {
 }
 
 pub(super) fn forces_act_where_asked(model: &Model, out: &mut Out) {
-    let acting = Acting::new(model);
+    let acting = LazyCell::new(|| Acting::new(model));
     for (&id, request) in &model.requests {
         let RequestKind::Force { i, j, .. } = request.kind else {
             continue;
@@ -91,10 +92,9 @@ pub(super) fn forces_act_where_asked(model: &Model, out: &mut Out) {
         let Formula::Expression { text, .. } = owned.formula else {
             continue;
         };
-        let Ok(expr) = text.expression() else {
+        let Ok(ast) = text.ast() else {
             continue;
         };
-        let ast = expr.ast();
         for node in &ast.nodes {
             let Node::Call {
                 callee: Callee::Measure(measure),

@@ -80,13 +80,13 @@ pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
             let Some(m) = marker.and_then(|m| model.markers.get(&m).map(|_| m)) else {
                 continue;
             };
-            let marker = model.called(ElementKind::Marker.id(m));
+            let marker = || model.called(ElementKind::Marker.id(m));
             if model.body_of(m).is_some_and(|body| body != id) {
                 error(
                     out,
                     "marker_of_another_part",
                     who,
-                    format!("{name} = {m}: {marker} belongs to another part"),
+                    format!("{name} = {m}: {} belongs to another part", marker()),
                 );
                 at_argument(out, name);
             }
@@ -95,7 +95,7 @@ pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
                     out,
                     "floating_marker",
                     who,
-                    format!("{name} = {m}: {marker} is FLOATING"),
+                    format!("{name} = {m}: {} is FLOATING", marker()),
                 );
                 at_argument(out, name);
             }

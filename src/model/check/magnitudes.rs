@@ -4,6 +4,7 @@
 use super::*;
 use crate::model::geometry::marker_frame;
 use crate::space::Vec3;
+use std::cell::LazyCell;
 
 /// Acceleration of gravity at the surface of the earth, in m/s².
 const EARTH: f64 = 9.80665;
@@ -119,10 +120,10 @@ pub(super) fn beams_have_their_length(model: &Model, out: &mut Out) {
             at_argument(out, "LENGTH");
         }
     }
-    let all = extent(model);
+    let all = LazyCell::new(|| extent(model));
     for (&id, b) in &model.bushings {
         let stiffness = b.stiffness[..3].iter().fold(0.0_f64, |k, x| k.max(x.abs()));
-        let far = apart(b.i, b.j).filter(|d| *d > WIDE_BUSHING * all);
+        let far = apart(b.i, b.j).filter(|d| *d > WIDE_BUSHING * *all);
         if let Some(far) = far.filter(|_| stiffness > 0.0 && b.preload[..3] == [0.0; 3]) {
             let message = format!(
                 "its markers are {} apart, so that it begins with a force of up to {}",
@@ -164,7 +165,7 @@ fn extent(model: &Model) -> f64 {
 }
 
 pub(super) fn inertia_fits_its_part(model: &Model, out: &mut Out) {
-    let all = extent(model);
+    let all = LazyCell::new(|| extent(model));
     let heaviest = model.bodies().fold(0.0, |m: f64, (_, b)| m.max(b.mass));
     let unit = model.units.as_ref().map_or("", |u| u.length.as_str());
     let mut markers_of: BTreeMap<ElementId, Vec<&Marker>> = BTreeMap::new();
@@ -183,7 +184,9 @@ pub(super) fn inertia_fits_its_part(model: &Model, out: &mut Out) {
         let own = markers_of.get(&id).into_iter().flatten();
         let reach = own.map(|m| (Vec3(m.qp) - Vec3(cm.qp)).norm());
         let reach = reach.fold(0.0, f64::max);
-        let size = all.max(reach);
+        // what is not wide beside its own part is not beside the mechanism
+        let is_wide = radius > WIDE_GYRATION * reach;
+        let size = if is_wide { all.max(reach) } else { reach };
         let (wide, narrow) = (WIDE_GYRATION * size, NARROW_GYRATION * reach);
         // a body without weight may stand for the inertia of a drive train
         let weighs = part.mass > WEIGHTLESS * heaviest;

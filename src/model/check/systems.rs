@@ -113,7 +113,11 @@ pub(super) fn systems_have_their_arrays(model: &Model, out: &mut Out) {
             _ => matches!(a.kind, ArrayKind::Ic(_)),
         })
     };
-    for r in model.references() {
+    let all = match model.arrays.is_empty() {
+        true => Vec::new(),
+        false => model.references(),
+    };
+    for r in all {
         if r.target.kind == ElementKind::Array && !fits(r.target.number, r.argument) {
             let kind = match r.argument {
                 "XD" => "X",
