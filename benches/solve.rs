@@ -331,17 +331,6 @@ impl Bouncer {
             full,
         }
     }
-    const fn slot() -> Self {
-        Bouncer {
-            start: [0.0, 2.0],
-            gravity: 0.0,
-            stops: &[[-0.1, 1.0], [0.1, -1.0]],
-            stiffness: 1e6,
-            exponent: 1.5,
-            damping: 50.0,
-            full: 1e-3,
-        }
-    }
     fn depth(&self, stop: usize, y: &[f64]) -> f64 {
         let [at, side] = self.stops[stop];
         side * (at - y[0])
@@ -349,7 +338,7 @@ impl Bouncer {
     /// What a stop would push with, were it to pull as well.
     fn push(&self, stop: usize, is_deep: bool, y: &[f64]) -> f64 {
         let p = self.depth(stop, y);
-        let u = p / self.full;
+        let u = (p / self.full).max(0.0);
         let part = if is_deep {
             1.0
         } else {
@@ -503,6 +492,24 @@ fn by_hand(hand: &dyn Hand, times: &[f64], error: f64) -> (f64, Vec<Vec<f64>>, u
     (seconds, columns, evaluations)
 }
 
+/// Returns a time just behind the place where a function that was negative is zero, by secants of
+/// which the end that stays counts half.
+fn crossing(ends: [(f64, f64); 2], end: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+    let [mut a, mut b] = ends;
+    let mut behind = b.0;
+    while behind - a.0 > 1e-15 * end {
+        let t = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
+        let t = t.clamp(a.0 + 5e-16 * end, behind - 5e-16 * end);
+        let value = f(t);
+        if value > 0.0 {
+            (b, behind, a.1) = ((t, value), t, 0.5 * a.1);
+        } else {
+            (a, b.1) = ((t, value), 0.5 * b.1);
+        }
+    }
+    behind
+}
+
 /// Seconds, columns and evaluations of a hand-written mass between stops.
 fn between_stops(mass: &Bouncer, times: &[f64], error: f64) -> (f64, Vec<Vec<f64>>, usize) {
     let begun = Instant::now();
@@ -519,8 +526,22 @@ fn between_stops(mass: &Bouncer, times: &[f64], error: f64) -> (f64, Vec<Vec<f64
     while Method::<Within>::t(&method) < end {
         let mut problem = Within(mass, phase);
         let step = method.step(&mut problem, end).expect("a step");
-        mass.ends(phase, Method::<Within>::y(&method), &mut ends);
-        // the first of the ends that are behind, by secants of which the end that stays counts half
+        // an end may come and go within a step, but hardly where nothing touches
+        let samples = if phase == Phase::Flight { 1 } else { 5 };
+        let (mut from, mut looked) = (step.t0, step.t0);
+        ends.clear();
+        for k in 1..=samples {
+            if ends.iter().any(|e: &(f64, Phase)| e.0 > 0.0) {
+                break;
+            }
+            (from, looked) = (looked, step.t0 + step.h * f64::from(k) / f64::from(samples));
+            if k == samples {
+                looked = step.t1;
+            }
+            let within = method.interpolate(&mut problem, looked, &mut y);
+            within.expect("a value");
+            mass.ends(phase, &y, &mut ends);
+        }
         let mut first: Option<(f64, Phase)> = None;
         for (k, &(after, next)) in ends.iter().enumerate().filter(|e| e.1.0 > 0.0) {
             let mut off = |t: f64| {
@@ -529,18 +550,7 @@ fn between_stops(mass: &Bouncer, times: &[f64], error: f64) -> (f64, Vec<Vec<f64
                 mass.ends(phase, &y, &mut there);
                 there[k].0
             };
-            let (mut a, mut b) = ((step.t0, off(step.t0)), (step.t1, after));
-            let mut behind = step.t1;
-            while behind - a.0 > 1e-15 * end {
-                let t = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
-                let t = t.clamp(a.0 + 5e-16 * end, behind - 5e-16 * end);
-                let value = off(t);
-                if value > 0.0 {
-                    (b, behind, a.1) = ((t, value), t, 0.5 * a.1);
-                } else {
-                    (a, b.1) = ((t, value), 0.5 * b.1);
-                }
-            }
+            let behind = crossing([(from, off(from)), (looked, after)], end, off);
             if first.is_none_or(|f| behind < f.0) {
                 first = Some((behind, next));
             }
@@ -607,15 +617,13 @@ enum Hands<'a> {
 fn beside_hand_written(chosen: &dyn Fn(&str) -> bool, table: bool) {
     let squeezer = Squeezer::new();
     use Hands::{Between, Smooth};
-    let problems: [(&str, Hands); 9] = [
+    let problems: [(&str, Hands); 7] = [
         ("a01_pendulum", Smooth(&Pendulum)),
         ("double_pendulum", Smooth(&DoublePendulum)),
         ("a02_nfourbar_2", Smooth(&FourBars)),
         ("a03_andrews", Smooth(&squeezer)),
         ("bounce_k1e5", Between(Bouncer::ball(1.0, 1e5, 20.0, 1e-3))),
-        ("bounce_k1e6", Between(Bouncer::ball(1.0, 1e6, 20.0, 1e-3))),
         ("bounce_k1e8", Between(Bouncer::ball(1.0, 1e8, 20.0, 1e-3))),
-        ("bistop_slot", Between(Bouncer::slot())),
         (
             "settle_sphere",
             Between(Bouncer::ball(0.0501, 1e8, 2000.0, 1e-4)),
