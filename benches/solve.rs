@@ -2,7 +2,8 @@
 //!
 //! The hand-written right-hand sides have minimal coordinates and are compiled with full optimization; they run under the same
 //! explicit method (DOP853) over the same requests. For each true error the least time that reaches it is taken, medians of runs that
-//! alternate; the ratio is what generality costs. Then chains: the time of one evaluation against the number of links.
+//! alternate; the ratio is what generality costs. Contacts are written by hand one branch after the other, from event to event on
+//! the interpolant. Then chains: the time of one evaluation against the number of links.
 //!
 //! `cargo bench --bench solve`, or `cargo bench --bench solve -- four table`: only problems whose names contain a word; `table` shows every request.
 
@@ -291,6 +292,116 @@ impl Hand for Squeezer {
     }
 }
 
+/// A mass on a line between stops: what holds between two events is smooth.
+struct Bouncer {
+    start: [f64; 2],
+    gravity: f64,
+    /// where each stop begins, and to which side it pushes
+    stops: &'static [[f64; 2]],
+    stiffness: f64,
+    exponent: f64,
+    damping: f64,
+    /// penetration of full damping
+    full: f64,
+}
+
+/// What holds of a mass between stops: the number of the stop.
+#[derive(Clone, Copy, PartialEq)]
+enum Phase {
+    Flight,
+    /// damping grows with the penetration
+    Shallow(usize),
+    Deep(usize),
+    /// the stop would pull
+    Loose(usize),
+}
+
+/// A phase of a mass between stops as the methods want it.
+struct Within<'a>(&'a Bouncer, Phase);
+
+impl Bouncer {
+    const fn ball(height: f64, stiffness: f64, damping: f64, full: f64) -> Self {
+        Bouncer {
+            start: [height, 0.0],
+            gravity: 9.81,
+            stops: &[[0.05, 1.0]],
+            stiffness,
+            exponent: 1.5,
+            damping,
+            full,
+        }
+    }
+    fn depth(&self, stop: usize, y: &[f64]) -> f64 {
+        let [at, side] = self.stops[stop];
+        side * (at - y[0])
+    }
+    /// What a stop would push with, were it to pull as well.
+    fn push(&self, stop: usize, is_deep: bool, y: &[f64]) -> f64 {
+        let p = self.depth(stop, y);
+        let u = (p / self.full).max(0.0);
+        let part = if is_deep {
+            1.0
+        } else {
+            u * u * (3.0 - 2.0 * u)
+        };
+        // beyond its end a phase has to have a value, too
+        self.stiffness * p.max(0.0).powf(self.exponent)
+            - self.damping * part * self.stops[stop][1] * y[1]
+    }
+    /// Functions that are negative as long as a phase lasts, and the phases that follow.
+    fn ends(&self, phase: Phase, y: &[f64], found: &mut Vec<(f64, Phase)>) {
+        found.clear();
+        match phase {
+            Phase::Flight => {
+                let touches = (0..self.stops.len()).map(|k| (self.depth(k, y), Phase::Shallow(k)));
+                found.extend(touches);
+            }
+            Phase::Shallow(k) => {
+                let p = self.depth(k, y);
+                found.push((-p, Phase::Flight));
+                found.push((p - self.full, Phase::Deep(k)));
+                found.push((-self.push(k, false, y), Phase::Loose(k)));
+            }
+            Phase::Deep(k) => {
+                found.push((self.full - self.depth(k, y), Phase::Shallow(k)));
+                found.push((-self.push(k, true, y), Phase::Loose(k)));
+            }
+            Phase::Loose(k) => {
+                let p = self.depth(k, y);
+                let is_deep = p > self.full;
+                let back = if is_deep {
+                    Phase::Deep(k)
+                } else {
+                    Phase::Shallow(k)
+                };
+                found.push((-p, Phase::Flight));
+                found.push((self.push(k, is_deep, y), back));
+            }
+        }
+    }
+}
+
+impl Ode for Within<'_> {
+    fn size(&self) -> usize {
+        2
+    }
+    fn rate(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        let Within(mass, phase) = *self;
+        ydot[0] = y[1];
+        ydot[1] = -mass.gravity;
+        if let Phase::Shallow(k) | Phase::Deep(k) = phase {
+            ydot[1] += mass.stops[k][1] * mass.push(k, phase == Phase::Deep(k), y);
+        }
+        Ok(())
+    }
+    fn jacobian(&mut self, _: f64, _: &[f64], _: &mut [f64], _: &mut [f64]) -> Result<(), Failure> {
+        unreachable!("an explicit method asks for no Jacobian")
+    }
+    fn typical(&self, typical: &mut [f64]) {
+        typical.fill(1.0);
+    }
+}
+
 /// A hand-written mechanism as the methods want it.
 struct Written<'a>(&'a dyn Hand, usize);
 impl Ode for Written<'_> {
@@ -348,8 +459,8 @@ fn dataset(problem: &str) -> (Script, Model) {
     (script, model)
 }
 
-/// Seconds and columns of a hand-written mechanism.
-fn by_hand(hand: &dyn Hand, times: &[f64], error: f64) -> (f64, Vec<Vec<f64>>) {
+/// Seconds, columns and evaluations of a hand-written mechanism.
+fn by_hand(hand: &dyn Hand, times: &[f64], error: f64) -> (f64, Vec<Vec<f64>>, usize) {
     let start = hand.start();
     let n = start.len();
     let begun = Instant::now();
@@ -377,7 +488,90 @@ fn by_hand(hand: &dyn Hand, times: &[f64], error: f64) -> (f64, Vec<Vec<f64>>) {
     let columns = (0..rows[0].len())
         .map(|k| rows.iter().map(|r| r[k]).collect())
         .collect();
-    (seconds, columns)
+    let evaluations = Method::<Written>::stats(&method).evaluations;
+    (seconds, columns, evaluations)
+}
+
+/// Returns a time just behind the place where a function that was negative is zero, by secants of
+/// which the end that stays counts half.
+fn crossing(ends: [(f64, f64); 2], end: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+    let [mut a, mut b] = ends;
+    let mut behind = b.0;
+    while behind - a.0 > 1e-15 * end {
+        let t = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
+        let t = t.clamp(a.0 + 5e-16 * end, behind - 5e-16 * end);
+        let value = f(t);
+        if value > 0.0 {
+            (b, behind, a.1) = ((t, value), t, 0.5 * a.1);
+        } else {
+            (a, b.1) = ((t, value), 0.5 * b.1);
+        }
+    }
+    behind
+}
+
+/// Seconds, columns and evaluations of a hand-written mass between stops.
+fn between_stops(mass: &Bouncer, times: &[f64], error: f64) -> (f64, Vec<Vec<f64>>, usize) {
+    let begun = Instant::now();
+    let options = numeric::Options {
+        tolerance: error,
+        ..numeric::Options::default()
+    };
+    let mut method = Dop853::new(2, &options);
+    let (mut phase, mut y) = (Phase::Flight, mass.start);
+    let mut columns = vec![vec![y[0]], vec![y[1]]];
+    let (mut ends, mut there) = (Vec::new(), Vec::new());
+    let end = times[times.len() - 1];
+    Method::<Within>::start(&mut method, &mut Within(mass, phase), times[0], &y).expect("a start");
+    while Method::<Within>::t(&method) < end {
+        let mut problem = Within(mass, phase);
+        let step = method.step(&mut problem, end).expect("a step");
+        // an end may come and go within a step, but hardly where nothing touches
+        let samples = if phase == Phase::Flight { 1 } else { 5 };
+        let (mut from, mut looked) = (step.t0, step.t0);
+        ends.clear();
+        for k in 1..=samples {
+            if ends.iter().any(|e: &(f64, Phase)| e.0 > 0.0) {
+                break;
+            }
+            (from, looked) = (looked, step.t0 + step.h * f64::from(k) / f64::from(samples));
+            if k == samples {
+                looked = step.t1;
+            }
+            let within = method.interpolate(&mut problem, looked, &mut y);
+            within.expect("a value");
+            mass.ends(phase, &y, &mut ends);
+        }
+        let mut first: Option<(f64, Phase)> = None;
+        for (k, &(after, next)) in ends.iter().enumerate().filter(|e| e.1.0 > 0.0) {
+            let mut off = |t: f64| {
+                let within = method.interpolate(&mut problem, t, &mut y);
+                within.expect("a value");
+                mass.ends(phase, &y, &mut there);
+                there[k].0
+            };
+            let behind = crossing([(from, off(from)), (looked, after)], end, off);
+            if first.is_none_or(|f| behind < f.0) {
+                first = Some((behind, next));
+            }
+        }
+        let until = first.map_or(step.t1, |f| f.0);
+        while columns[0].len() < times.len() && times[columns[0].len()] <= until {
+            let t = times[columns[0].len()];
+            let within = method.interpolate(&mut problem, t, &mut y);
+            within.expect("a value");
+            (columns.iter_mut().zip(y)).for_each(|(column, y)| column.push(y));
+        }
+        if let Some((t, next)) = first {
+            let within = method.interpolate(&mut problem, t, &mut y);
+            within.expect("a value");
+            phase = next;
+            let anew = method.reinitialize(&mut Within(mass, phase), t, &y);
+            anew.expect("a start");
+        }
+    }
+    let evaluations = Method::<Within>::stats(&method).evaluations;
+    (begun.elapsed().as_secs_f64(), columns, evaluations)
 }
 
 /// A run of the dataset.
@@ -414,13 +608,26 @@ fn least(runs: &[(f64, f64)]) -> [Option<f64>; 3] {
     })
 }
 
+/// A program by hand.
+enum Hands<'a> {
+    Smooth(&'a dyn Hand),
+    Between(Bouncer),
+}
+
 fn beside_hand_written(chosen: &dyn Fn(&str) -> bool, table: bool) {
     let squeezer = Squeezer::new();
-    let problems: [(&str, &dyn Hand); 4] = [
-        ("a01_pendulum", &Pendulum),
-        ("double_pendulum", &DoublePendulum),
-        ("a02_nfourbar_2", &FourBars),
-        ("a03_andrews", &squeezer),
+    use Hands::{Between, Smooth};
+    let problems: [(&str, Hands); 7] = [
+        ("a01_pendulum", Smooth(&Pendulum)),
+        ("double_pendulum", Smooth(&DoublePendulum)),
+        ("a02_nfourbar_2", Smooth(&FourBars)),
+        ("a03_andrews", Smooth(&squeezer)),
+        ("bounce_k1e5", Between(Bouncer::ball(1.0, 1e5, 20.0, 1e-3))),
+        ("bounce_k1e8", Between(Bouncer::ball(1.0, 1e8, 20.0, 1e-3))),
+        (
+            "settle_sphere",
+            Between(Bouncer::ball(0.0501, 1e8, 2000.0, 1e-4)),
+        ),
     ];
     println!(
         "{:18} {:>8} {:>12} {:>12} {:>7}",
@@ -434,11 +641,16 @@ fn beside_hand_written(chosen: &dyn Fn(&str) -> bool, table: bool) {
         for error in REQUESTS {
             let (mut a, mut b) = (Vec::new(), Vec::new());
             let (mut ea, mut eb) = (0.0, 0.0);
+            let mut evaluations = (0, 0);
             for _ in 0..ROUNDS {
                 let (session, columns) = by_us(problem, error, None);
                 a.push(session.run.record.seconds.solve);
                 ea = true_error(&reference, &names, &columns);
-                let (seconds, columns) = by_hand(hand, times, error);
+                let (seconds, columns, n) = match &hand {
+                    Smooth(hand) => by_hand(*hand, times, error),
+                    Between(mass) => between_stops(mass, times, error),
+                };
+                evaluations = (session.run.record.counts.evaluations, n);
                 b.push(seconds);
                 eb = true_error(&reference, &names, &columns);
             }
@@ -447,8 +659,9 @@ fn beside_hand_written(chosen: &dyn Fn(&str) -> bool, table: bool) {
             if table {
                 let [(ea, a), (eb, b)] = [ours[ours.len() - 1], theirs[theirs.len() - 1]];
                 let [a, b] = [a * 1e3, b * 1e3];
+                let (n, m) = evaluations;
                 println!(
-                    "  request {error:.0e}: true error {ea:.1e} in {a:.4} ms, by hand {eb:.1e} in {b:.4} ms"
+                    "  request {error:.0e}: true error {ea:.1e} in {a:.4} ms, {n} evaluations, by hand {eb:.1e} in {b:.4} ms, {m} evaluations"
                 );
             }
         }

@@ -225,10 +225,6 @@ impl Layout {
     pub fn n_rates(&self) -> usize {
         self.n_y() + 1
     }
-    /// Splits the outputs of a rate program into ẏ and the strength of the rows.
-    pub fn rates<'r>(&self, outputs: &'r [f64]) -> (&'r [f64], f64) {
-        (self.without_multipliers(outputs), outputs[self.n_y()])
-    }
     /// Splits the numbers of an instant into their blocks.
     pub fn instant<S: Copy>(&self, numbers: &[S]) -> Instant<S> {
         Instant {

@@ -218,3 +218,29 @@ fn two_loops_that_begin_beside_a_fold_notice_the_later_ones() {
         }
     }
 }
+
+#[test]
+fn where_branches_met_before_a_line_was_moved_a_crank_turns_back_behind_it() {
+    // five passages; then the slider's line moves by 1e-4, and the crank can be at −90° no more
+    let text = crank_and_rod(1.0).replace("I=41, J=11", "I=41, J=51")
+        + "PART/5, MASS=1, CM=50, IP=1,1,1\nMARKER/50, PART=5\nMARKER/51, PART=5, REULER=90D,90D,0\nMARKER/52, PART=5, REULER=0,90D,0\n\
+           MARKER/12, PART=1, REULER=0,90D,0\nJOINT/5, TRANSLATIONAL, I=52, J=12\n\
+           MOTION/1, JOINT=5, TRANSLATION, FUNCTION=-1E-4*STEP5(TIME,6.5,0,6.8,1)\n";
+    let pi = std::f64::consts::PI;
+    for method in METHODS {
+        for request in [1e-4, 1e-6] {
+            let options = Options {
+                max_steps: Some(20 * MAX_STEPS),
+                ..options_by(&["AZ(21,1)"], method.name, request)
+            };
+            let mut s = begin(model(&text), "line", options);
+            let status = s.simulate(Analysis::Dynamic, 12.0, 120, &mut Unwatched);
+            assert_eq!(status.expect("it can be run"), Status::Completed);
+            let angles = values(&s, "AZ(21,1)");
+            for angle in &angles[70..] {
+                let between = (3.5 * pi..5.5 * pi).contains(angle);
+                assert!(between, "{} {request:e}: {angle}", method.name);
+            }
+        }
+    }
+}

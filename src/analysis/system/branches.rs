@@ -232,6 +232,15 @@ impl Branches {
         rates.iter().map(|x| x * 0.0).sum::<f64>() == 0.0
     }
 
+    /// Evaluates the rates of the branches that are held and between which nothing slides, into
+    /// their place; returns how strong the rows are. `None`: they have no value.
+    pub(super) fn held_rates_at(&mut self, numbers: &[f64], ydot: &mut [f64]) -> Option<f64> {
+        self.with_sides(numbers)?;
+        let held = self.switching.as_ref()?.held.as_ref()?;
+        let (strength, is_finite) = held.run_finite(&self.numbers, &mut self.held_work, ydot);
+        (is_finite && strength.is_finite()).then_some(strength)
+    }
+
     /// Evaluates the switching functions, the branches of others held where branches are held
     /// (n_switches)
     pub(super) fn values(&mut self, numbers: &[f64], values: &mut [f64]) {

@@ -43,13 +43,18 @@ const JUMP_BOUNDS: [f64; 2] = [1e-6, 0.05];
 const ON_ROWS: f64 = 10.0 * ROUNDING;
 
 impl System {
-    /// Puts the stage `y` of a step onto weak rows before it is evaluated, where violations would
-    /// be felt.
-    fn evaluate_weak(&mut self, t: f64, y: &[f64]) {
-        let l = self.scene.layout;
+    /// Puts the stage `y` of a step onto weak rows and evaluates it anew, where violations would be
+    /// felt. Given are its rates, how strong the rows are, and whether the rates are finite;
+    /// returns whether they are now.
+    fn evaluate_weak(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        (ydot, mut strength, mut finite): (&mut [f64], f64, bool),
+    ) -> bool {
         self.recorded.rows.were_weak |= !self.singular_steps.is_paused();
-        let strength = l.rates(&self.recorded.rate.values).1.max(0.0);
-        let permitted = (MAGNIFIED_ERROR * self.precision * strength.sqrt()).max(ROUNDING);
+        let square = strength.max(0.0);
+        let permitted = (MAGNIFIED_ERROR * self.precision * square.sqrt()).max(ROUNDING);
         let violation = self.worst_violation();
         if violation.is_nan() || violation > permitted {
             let mut stage = std::mem::take(&mut self.stage);
@@ -57,12 +62,12 @@ impl System {
             stage.extend_from_slice(y);
             if self.put_on_rows(t, &mut stage).is_ok() {
                 self.set(t, &stage);
-                self.recorded.run_rate(&self.numbers);
+                (strength, finite) = self.recorded.rates_at(&self.numbers, ydot);
             }
             self.stage = stage;
         }
-        let (_, strength) = l.rates(&self.recorded.rate.values);
         self.singular_steps.see(t, strength);
+        finite
     }
 
     /// Returns the largest violation of a row at the present numbers.
@@ -186,24 +191,15 @@ impl Ode for System {
                 recoverable: true,
             });
         }
-        let n = self.scene.layout.n_y();
-        self.recorded.run_rate(&self.numbers);
-        let strength = self.recorded.rate.values[n];
+        let ydot = &mut ydot[..self.scene.layout.n_y()];
+        let (strength, mut finite) = self.recorded.rates_at(&self.numbers, ydot);
         if strength < APPROACHING_PIVOT && self.recorded.rows.projection.is_some() {
             self.singular_steps.see_approach(t, strength);
             if strength < NEAR_SINGULAR_PIVOT {
-                self.evaluate_weak(t, y);
+                finite = self.evaluate_weak(t, y, (ydot, strength, finite));
             }
         }
-        // number by number: a copy of all at once waits until the last of them has left the
-        // processor, a tenth of the time of a pendulum. A sum is finite only if all its terms are
-        let mut sum = 0.0;
-        let rates = &self.recorded.rate.values[..n];
-        for (rate, &x) in ydot.iter_mut().zip(rates) {
-            *rate = x;
-            sum += x * 0.0;
-        }
-        if sum == 0.0 {
+        if finite {
             return Ok(());
         }
         let what = ydot.iter().position(|x| !x.is_finite()).unwrap_or(0);

@@ -165,6 +165,26 @@ impl Recorded {
             self.rate.run(numbers);
         }
     }
+
+    /// Evaluates the rates as [`run_rate`](Self::run_rate) does, into `ydot`; returns how strong
+    /// the rows are, and whether the rates are finite.
+    #[inline]
+    pub fn rates_at(&mut self, numbers: &[f64], ydot: &mut [f64]) -> (f64, bool) {
+        let branches = &mut self.branches;
+        if branches.is_holding() && branches.is_sliding() {
+            self.run_rate(numbers);
+            let (rates, strength) = self.rate.values.split_at(ydot.len());
+            ydot.copy_from_slice(rates);
+            let is_finite = rates.iter().all(|x| x.is_finite());
+            return (strength.first().copied().unwrap_or(f64::NAN), is_finite);
+        }
+        if branches.is_holding()
+            && let Some(strength) = branches.held_rates_at(numbers, ydot)
+        {
+            return (strength, true);
+        }
+        self.rate.run_finite(numbers, ydot)
+    }
 }
 
 /// Programs that have the rows of a scene in common, and are recorded together.

@@ -26,4 +26,11 @@ impl Recording {
         self.program.run(numbers, &mut self.work, &mut self.values);
         &self.values
     }
+
+    /// Runs the program on a row of numbers, its outputs but for the last into `out`; returns the
+    /// last, and whether the others are finite.
+    #[inline]
+    pub fn run_finite(&mut self, numbers: &[f64], out: &mut [f64]) -> (f64, bool) {
+        self.program.run_finite(numbers, &mut self.work, out)
+    }
 }

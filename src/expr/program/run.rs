@@ -149,6 +149,34 @@ impl Program {
         }
     }
 
+    /// Runs over plain numbers as [`Program::run`] does, with at least one output more than places;
+    /// returns the first output behind them, and whether all that came out before it are finite.
+    #[cfg(feature = "solver")]
+    #[inline]
+    pub(crate) fn run_finite(
+        &self,
+        inputs: &[f64],
+        work: &mut Work,
+        out: &mut [f64],
+    ) -> (f64, bool) {
+        let outputs = &self.core().outputs;
+        if self.run_at_once(inputs, work).is_none() {
+            self.enter_and_run(inputs, work);
+        }
+        let registers = &work.registers[..];
+        // number by number: what was just written is not read as a whole. A sum is finite only if
+        // all its terms are
+        let mut sum = 0.0;
+        for (out, &r) in out.iter_mut().zip(outputs) {
+            let x = registers[r as usize];
+            *out = x;
+            sum += x * 0.0;
+        }
+        let behind = outputs.get(out.len());
+        let behind = behind.map_or(f64::NAN, |&r| registers[r as usize]);
+        (behind, sum == 0.0)
+    }
+
     /// Runs over plain numbers as [`Program::run`] does, for inputs that nobody has counted.
     ///
     /// # Errors

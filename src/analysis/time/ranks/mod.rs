@@ -7,6 +7,7 @@
 //! made anew, by [`better_rows`]. And a drive may ask for a position that no rows permit: the
 //! mechanism is locked, see [`locked`].
 
+mod known;
 mod locked;
 mod passes;
 mod selection;
@@ -137,12 +138,13 @@ pub fn better_rows(scene: Configured<'_>, numbers: &[f64]) -> Option<Vec<bool>> 
         places.for_each(|(row, &r)| row.copy_from_slice(&all[r]));
         rows
     };
-    let (stay, least) = select(rows_of(&kept), |_| true, kept.len());
     let every: Vec<usize> = (0..all.len()).collect();
-    let (better, most) = select(rows_of(&every), |r| kept.contains(&r), usize::MAX);
+    let is_kept = |r: usize| scene.configuration.active[r];
+    let (better, most) = select(rows_of(&every), is_kept, usize::MAX);
     if better == kept || better.len() < kept.len() {
         return None;
     }
+    let (stay, least) = select(rows_of(&kept), |_| true, kept.len());
     let gains =
         better.len() > kept.len() || stay.len() < kept.len() || least < WORTH_EXCHANGING * most;
     gains.then(|| (0..scene.rows.len()).map(|r| better.contains(&r)).collect())

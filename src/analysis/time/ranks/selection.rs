@@ -33,6 +33,10 @@ impl Rows {
         }
     }
 
+    pub fn n_columns(&self) -> usize {
+        self.n_columns
+    }
+
     pub fn row(&self, r: usize) -> &[f64] {
         &self.values[r * self.n_columns..][..self.n_columns]
     }
@@ -69,7 +73,7 @@ pub(super) fn select(
 ) -> (Vec<usize>, f64) {
     let sizes = rows.iter().map(norm).collect();
     if rows.n_columns < MANY_COLUMNS {
-        let (mut rows, mut unit) = (rows, Vec::new());
+        let (mut rows, mut unit) = (rows, Unit::default());
         let take = |pivot: usize, open: &[usize], sizes: &mut [f64]| {
             take_away((&mut rows, &mut unit), pivot, open, sizes);
         };
@@ -113,34 +117,66 @@ fn choose(
     (chosen, least)
 }
 
+/// The unit of a chosen row.
+#[derive(Default)]
+struct Unit {
+    /// places and values of what is not zero
+    entries: Vec<(usize, f64)>,
+    /// all of it, where little is zero   (n_columns)
+    all: Vec<f64>,
+}
+
 /// Takes what a chosen row determines from the open ones (1). `unit`: a place for its unit.
 fn take_away(
-    (rows, unit): (&mut Rows, &mut Vec<(usize, f64)>),
+    (rows, unit): (&mut Rows, &mut Unit),
     pivot: usize,
     open: &[usize],
     sizes: &mut [f64],
 ) {
     let length = sizes[pivot];
+    let Unit { entries, all } = unit;
     // rows that have nothing where the chosen one has something stay as they are
-    let entries = rows.row(pivot).iter().enumerate().filter(|e| *e.1 != 0.0);
-    unit.clear();
-    unit.extend(entries.map(|(k, x)| (k, x / length)));
+    let chosen = rows.row(pivot).iter().map(|x| x / length);
+    all.clear();
+    all.extend(chosen);
+    entries.clear();
+    entries.extend(all.iter().copied().enumerate().filter(|e| e.1 != 0.0));
+    let is_dense = 2 * entries.len() > all.len();
     for &r in open {
         let row = rows.row_mut(r);
-        let mut changed = false;
-        // twice, so that nothing is left of it but rounding
-        for _ in 0..2 {
-            let along: f64 = unit.iter().map(|&(k, x)| row[k] * x).sum();
-            if along == 0.0 {
-                break;
-            }
-            unit.iter().for_each(|&(k, x)| row[k] -= along * x);
-            changed = true;
-        }
+        let changed = match is_dense {
+            true => take_away_along(row, all),
+            false => take_away_sparse(row, entries),
+        };
         if changed {
             sizes[r] = norm(row);
         }
     }
+}
+
+/// Takes what lies along a unit away; twice, so that nothing is left of it but rounding. Returns
+/// whether anything was.
+fn take_away_along(row: &mut [f64], unit: &[f64]) -> bool {
+    for pass in 0..2 {
+        let along = row.iter().zip(unit).fold(0.0, |sum, (x, u)| sum + x * u);
+        if along == 0.0 {
+            return pass > 0;
+        }
+        row.iter_mut().zip(unit).for_each(|(x, u)| *x -= along * u);
+    }
+    true
+}
+
+/// The same for a unit with few entries: place and value of each.
+fn take_away_sparse(row: &mut [f64], unit: &[(usize, f64)]) -> bool {
+    for pass in 0..2 {
+        let along = unit.iter().fold(0.0, |sum, &(k, x)| sum + row[k] * x);
+        if along == 0.0 {
+            return pass > 0;
+        }
+        unit.iter().for_each(|&(k, x)| row[k] -= along * x);
+    }
+    true
 }
 
 pub(super) fn norm(x: &[f64]) -> f64 {
@@ -286,7 +322,7 @@ mod tests {
             let sizes: Vec<f64> = rows.iter().map(norm).collect();
             for preference in [1, 2, 3] {
                 let preferred = |r: usize| r.is_multiple_of(preference);
-                let (mut dense, mut unit) = (rows.clone(), Vec::new());
+                let (mut dense, mut unit) = (rows.clone(), Unit::default());
                 let by_differences = choose(sizes.clone(), preferred, usize::MAX, |p, o, s| {
                     take_away((&mut dense, &mut unit), p, o, s);
                 });

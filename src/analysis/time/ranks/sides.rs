@@ -10,6 +10,7 @@
 //! that only come near each other are told from two on one branch, however long the step was. Each
 //! loop (rows that share coordinates) has a B of its own, judged in `turning.rs`.
 
+use super::known::Meetings;
 use super::passes::DEPENDENT_THERE;
 use super::selection::{self, Rows, norm};
 use super::turning::Beginning;
@@ -73,6 +74,10 @@ pub struct Sides {
     places: Vec<(usize, usize, usize, f64)>,
     /// the longest that each row has been, by loops
     usual: Vec<Vec<f64>>,
+    /// where branches of each loop have met
+    known: Vec<Meetings>,
+    /// values of all rows, and scratch for them   (n_rows)
+    rows: (Program, Work, Vec<f64>),
 }
 
 impl Sides {
@@ -96,6 +101,12 @@ impl Sides {
         let places: Vec<_> = entries.iter().filter_map(place).collect();
         (!loops.is_empty() && places.len() == entries.len()).then(|| Self {
             usual: loops.iter().map(|l| vec![0.0; l.rows.len()]).collect(),
+            known: loops.iter().map(|l| Meetings::of(&scene, l)).collect(),
+            rows: (
+                system.row_values().clone(),
+                Work::default(),
+                vec![0.0; scene.rows.len()],
+            ),
             loops,
             values: vec![0.0; program.n_outputs()],
             program: program.clone(),
@@ -171,10 +182,15 @@ impl Sides {
         loops: &[usize],
         [(a, from), (b, to)]: [(&Node, &Side); 2],
     ) -> bool {
-        let (mut a, mut from) = (a.clone(), from.clone());
-        for _ in 0..MAX_MEETINGS {
+        let is_new = |k: &usize| !self.passes_known(system, *k, [(a, from), (b, to)]);
+        let loops: Vec<usize> = loops.iter().copied().filter(is_new).collect();
+        if loops.is_empty() {
+            return true;
+        }
+        let (first, mut a, mut from) = (from, a.clone(), from.clone());
+        for meetings in 0..MAX_MEETINGS {
             let ends = [(&a, &from), (b, to)];
-            let Some(meeting) = self.first_meeting(system, loops, ends) else {
+            let Some((meeting, nearest)) = self.first_meeting(system, &loops, ends) else {
                 return false;
             };
             // another one behind it?
@@ -184,11 +200,60 @@ impl Sides {
             };
             let turned = |&k: &usize| Beginning::at(&side.0[k]).has_turned(&to.0[k]);
             if t <= a.t || !loops.iter().any(turned) {
+                if meetings == 0 {
+                    self.learn(system, &loops, (&nearest, [first, to]));
+                }
                 return true;
             }
             (a, from) = (node, side);
         }
         true
+    }
+
+    /// Returns whether a loop turns between two states where its branches are known to meet.
+    fn passes_known(
+        &mut self,
+        system: &mut System,
+        k: usize,
+        [(a, from), (b, to)]: [(&Node, &Side); 2],
+    ) -> bool {
+        // as after a search
+        system.project_anew();
+        let known = std::mem::take(&mut self.known);
+        let mut passed = known[k].passed((system.mover(), system.scene.layout), [a, b]);
+        let found = passed.any(|(node, meeting)| {
+            let numbers = system.numbers_at(node.t, &node.y);
+            let is_there = self.is_on_rows(system, k, &numbers) && {
+                let side = self.look(&numbers);
+                self.margin(&[k], &side) < DEPENDENT_THERE
+            };
+            is_there && meeting.is_all_between(&from.0[k], &to.0[k])
+        });
+        drop(passed);
+        self.known = known;
+        found
+    }
+
+    /// Returns whether a state is on the rows of a loop.
+    fn is_on_rows(&mut self, system: &System, k: usize, numbers: &[f64]) -> bool {
+        let (program, work, values) = &mut self.rows;
+        program.run(numbers, work, values);
+        let off = |&r: &usize| (values[r] / system.scene.row_scale(r)).abs();
+        self.loops[k].rows.iter().all(|r| off(r) <= GAP)
+    }
+
+    /// Takes up the only meeting of some loops between two states whose rows are known.
+    fn learn(&mut self, system: &System, loops: &[usize], (meeting, ends): (&Node, [&Side; 2])) {
+        if !loops.iter().any(|&k| self.known[k].may_learn()) {
+            return;
+        }
+        let side = self.look(&system.numbers_at(meeting.t, &meeting.y));
+        let q = system.scene.layout.state(&meeting.y[..]).q;
+        for &k in loops {
+            if self.known[k].may_learn() && self.margin(&[k], &side) < DEPENDENT_THERE {
+                self.known[k].learn(q, ends.map(|side| &side.0[k]));
+            }
+        }
     }
 
     /// Finds a state on the rows, and the rows there, at a time between two others; `None`: there
@@ -210,14 +275,14 @@ impl Sides {
     }
 
     /// Finds the first position between two states at which rows of loops are dependent and behind
-    /// which a combination of them has turned: the state behind it. `None`: they turn without, on
-    /// branches that only come near each other.
+    /// which a combination of them has turned: the state behind it, and the one nearest to it.
+    /// `None`: they turn without, on branches that only come near each other.
     fn first_meeting(
         &mut self,
         system: &mut System,
         loops: &[usize],
         [(a, from), (b, to)]: [(&Node, &Side); 2],
-    ) -> Option<Node> {
+    ) -> Option<(Node, Node)> {
         let (mut a, mut b) = (a.clone(), b.clone());
         let mut margins = [from, to].map(|side| self.margin(loops, side));
         // σ falls and rises in proportion to time, no faster than the rows change
@@ -231,11 +296,18 @@ impl Sides {
         let mut before = vec![(a.t, margins[0])];
         for look in 1..=MAX_LOOKS {
             if margins[0].min(margins[1]) < DEPENDENT_THERE {
-                return Some(b);
+                let nearest = if margins[0] < margins[1] {
+                    a
+                } else {
+                    b.clone()
+                };
+                return Some((b, nearest));
             }
             let width = b.t - a.t;
             if slope * width < PASSED_BY * (margins[0] + margins[1]) {
-                return self.hidden_meeting(system, loops, [&ends[0], &ends[1]], &before);
+                let ends = [&ends[0], &ends[1]];
+                let hidden = self.hidden_meeting(system, loops, ends, &before)?;
+                return Some((hidden.clone(), hidden));
             }
             let part = match look.is_multiple_of(LOOKS_TO_MIDDLE) {
                 true => 0.5,

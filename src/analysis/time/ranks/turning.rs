@@ -22,6 +22,8 @@ const PARTS_OF_WAY: [f64; 8] = [0.35, 0.5, 0.65, 0.75, 0.84, 0.91, 0.96, 1.0];
 /// Imaginary part of an eigenvalue that counts as real, over its real part: a turn of the rows by
 /// 150° is not the passage of a singular position.
 const NEARLY_REAL: f64 = 0.5;
+/// Columns up to which zeros are not looked for.
+const FEW_COLUMNS: usize = 12;
 
 /// A square matrix by rows, one behind the other.
 type Square = Vec<f64>;
@@ -109,8 +111,23 @@ fn has_negative(b: &mut [f64], n: usize) -> Option<bool> {
     eigenvalues(b, n).map(|all| all.iter().any(is_negative))
 }
 
-/// Returns `A Bᵀ` of rows with many zeros.
+/// Returns `A Bᵀ`.
 fn products(a: &Rows, b: &Rows) -> Square {
+    if a.n_columns() > FEW_COLUMNS {
+        return sparse_products(a, b);
+    }
+    let n = b.iter().len();
+    let mut out = Vec::with_capacity(a.iter().len() * n);
+    for row in a.iter() {
+        for other in b.iter() {
+            out.push(row.iter().zip(other).fold(0.0, |sum, (x, y)| sum + x * y));
+        }
+    }
+    out
+}
+
+/// Returns `A Bᵀ` of rows with many zeros.
+fn sparse_products(a: &Rows, b: &Rows) -> Square {
     // the columns from the first to the last in which a row has anything
     let span = |row: &[f64]| {
         let first = row.iter().position(|x| *x != 0.0).unwrap_or(row.len());
