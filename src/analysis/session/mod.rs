@@ -271,6 +271,7 @@ impl Session {
     }
 
     /// Says that the model is as it was read without errors: it need not be checked again.
+    #[cfg(feature = "cli")]
     pub(crate) fn was_read(&mut self) {
         self.is_checked = true;
     }
