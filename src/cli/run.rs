@@ -126,7 +126,7 @@ pub fn run(args: &Args) -> Outcome {
         remark_on_loads(&job);
     }
     let is_as_read = job.is_as_read();
-    let (model, dataset, steps) = (job.reading.model, job.reading.dataset, job.steps);
+    let (Reading { model, dataset, .. }, steps) = (job.reading, job.steps);
     check_columns(args, &model, &steps)?;
     let name = args.name.as_ref().unwrap_or(&job.base);
     let mut session = open(args, (model, is_as_read), name);
@@ -134,8 +134,7 @@ pub fn run(args: &Args) -> Outcome {
     seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;
     let doubts: Vec<_> = read.iter().chain(&about_mechanism).cloned().collect();
-    (session.run.log).extend(doubts.iter().map(|d| Event::Warning(d.to_string())));
-    session.run.record.doubts.clone_from(&doubts);
+    note_doubts(&mut session, &doubts);
     let folder = args.out.as_deref();
     let tables = output::Tables::open(&args.output, folder, &mut session, clock)?;
     guard.follow(&session, &tables);
@@ -231,6 +230,12 @@ impl Args {
         }
         all
     }
+}
+
+/// Notes what is doubted in the files in the log and the record.
+fn note_doubts(session: &mut Session, doubts: &[Diagnostic]) {
+    (session.run.log).extend(doubts.iter().map(|d| Event::Warning(d.to_string())));
+    session.run.record.doubts = doubts.to_vec();
 }
 
 /// Remarks on the loads that were chosen, or that nothing acts at all.
