@@ -8,8 +8,8 @@ use crate::space::Frame;
 /// Difference of places, relative to their distance from the origin, and of axes that are the same.
 const SAME: f64 = 1e-9;
 
-/// Number of a joint, its type, its bodies in order, and where it stands.
-type Stands = (u32, JointKind, [Option<ElementId>; 2], Frame<f64>);
+/// Number of a joint, its type, and where it stands.
+type Stands = (u32, JointKind, Frame<f64>);
 
 pub(super) fn joints_stand_once(model: &Model, out: &mut Out) {
     let same = |a: &Frame<f64>, b: &Frame<f64>| {
@@ -17,7 +17,7 @@ pub(super) fn joints_stand_once(model: &Model, out: &mut Out) {
         let axes = a.rotation.column(2).cross(b.rotation.column(2));
         (a.position - b.position).norm() <= SAME * scale && axes.norm() <= SAME
     };
-    let mut seen: Vec<Stands> = Vec::new();
+    let mut seen: BTreeMap<[Option<ElementId>; 2], Vec<Stands>> = BTreeMap::new();
     for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
         let Some(at) = marker_frame(model, joint.j) else {
             continue;
@@ -28,9 +28,9 @@ pub(super) fn joints_stand_once(model: &Model, out: &mut Out) {
         }
         let mut bodies = [model.body_of(joint.i), model.body_of(joint.j)];
         bodies.sort();
-        let alike = seen.iter().find(|(_, kind, between, there)| {
-            *kind == joint.kind && *between == bodies && same(&at, there)
-        });
+        let between = seen.entry(bodies).or_default();
+        let mut between_them = between.iter();
+        let alike = between_them.find(|(_, kind, there)| *kind == joint.kind && same(&at, there));
         if let Some(first) = alike {
             let first = model.called(ElementKind::Joint.id(first.0));
             let message =
@@ -38,6 +38,6 @@ pub(super) fn joints_stand_once(model: &Model, out: &mut Out) {
             let who = (ElementKind::Joint.id(id), &joint.place);
             warn(out, "stands_twice", who, message);
         }
-        seen.push((id, joint.kind, bodies, at));
+        between.push((id, joint.kind, at));
     }
 }

@@ -17,10 +17,12 @@ const MOST_UNNAMED: usize = 4;
 struct Groups(BTreeMap<ElementId, ElementId>);
 
 impl Groups {
-    /// The representative of the group of a body.
-    fn of(&self, mut body: ElementId) -> ElementId {
+    /// The representative of the group of a body; the way to it is halved for the next time.
+    fn of(&mut self, mut body: ElementId) -> ElementId {
         while let Some(&next) = self.0.get(&body).filter(|&&next| next != body) {
-            body = next;
+            let beyond = self.0.get(&next).copied().unwrap_or(next);
+            self.0.insert(body, beyond);
+            body = beyond;
         }
         body
     }
@@ -101,14 +103,15 @@ pub(super) fn parts_are_held(model: &Model, out: &mut Out) {
         bodies.extend(from_outside.then_some(ground));
         groups.tie(&bodies);
     }
-    let loose = |(id, part): &(ElementId, &Part)| {
+    let held = groups.of(ground);
+    let may_fall = |(id, part): &(ElementId, &Part)| {
         let thrown = part.velocity.iter().flatten().any(|&v| v != 0.0);
-        !part.ground && model.is_active(*id) && !thrown && groups.of(*id) != groups.of(ground)
+        !part.ground && model.is_active(*id) && !thrown
     };
     let mut told = BTreeMap::new();
-    for (id, part) in model.bodies().filter(loose) {
-        let first = *told.entry(groups.of(id)).or_insert(id);
-        if first == id {
+    for (id, part) in model.bodies().filter(may_fall) {
+        let group = groups.of(id);
+        if group != held && *told.entry(group).or_insert(id) == id {
             let message = "nothing holds it: no joint, force or contact ties it to ground, and it falls for ever";
             warn(out, "nothing_holds", (id, &part.place), message.into());
             advise(
@@ -210,6 +213,85 @@ pub(super) fn joints_are_not_forgotten(model: &Model, out: &mut Out) {
     );
 }
 
+/// A marker that no constraint or force names, its body, and where it stands.
+type Idle = (u32, ElementId, Frame<f64>);
+
+/// Most markers with turned axes of which those on one axis are looked for: all pairs are compared.
+const MOST_AXES: usize = 400;
+
+/// Finds the pairs of markers on each other or on the same z axis, the first before the second, as
+/// long as `go_on` says so.
+fn meetings(idle: &[Idle], near: f64, mut go_on: impl FnMut(&Idle, &Idle) -> bool) {
+    let places: Vec<Vec3<f64>> = idle.iter().map(|m| m.2.position).collect();
+    let sorted = Sorted::of(&places);
+    for (k, a) in idle.iter().enumerate() {
+        for m in sorted.near(a.2.position, near).filter(|&m| m > k) {
+            if !go_on(a, &idle[m]) {
+                return;
+            }
+        }
+    }
+    // axes along that of ground are those of what is drawn in its plane
+    let z = |m: &Idle| m.2.rotation.column(2);
+    let turned = idle.iter().filter(|m| z(m).0[2].abs() < 1.0 - TOUCHING);
+    let turned: Vec<&Idle> = turned.collect();
+    if turned.len() > MOST_AXES {
+        return;
+    }
+    for (k, a) in turned.iter().enumerate() {
+        for b in &turned[k + 1..] {
+            let between = a.2.position - b.2.position;
+            let is_one_axis =
+                z(a).cross(z(b)).norm() < TOUCHING && z(a).cross(between).norm() <= near;
+            if is_one_axis && between.norm() > near && !go_on(a, b) {
+                return;
+            }
+        }
+    }
+}
+
+/// Places in the order of one coordinate, that along which they reach farthest.
+struct Sorted<'a> {
+    places: &'a [Vec3<f64>],
+    axis: usize,
+    /// coordinate and index of each
+    order: Vec<(f64, usize)>,
+}
+
+impl<'a> Sorted<'a> {
+    fn of(places: &'a [Vec3<f64>]) -> Self {
+        let extent = |axis: usize| {
+            let along = places.iter().map(|p| p.0[axis]);
+            let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                (low.min(x), high.max(x))
+            });
+            high - low
+        };
+        let axis = (0..3)
+            .max_by(|&a, &b| extent(a).total_cmp(&extent(b)))
+            .unwrap_or(0);
+        let along = places.iter().enumerate().map(|(k, p)| (p.0[axis], k));
+        let mut order: Vec<(f64, usize)> = along.collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        Self {
+            places,
+            axis,
+            order,
+        }
+    }
+
+    /// The indices of the places that are so near another.
+    fn near(&self, place: Vec3<f64>, near: f64) -> impl Iterator<Item = usize> {
+        let x = place.0[self.axis];
+        let first = self.order.partition_point(|o| o.0 < x - near);
+        let along = self.order[first..]
+            .iter()
+            .take_while(move |o| o.0 <= x + near);
+        let all = along.map(|o| o.1);
+        all.filter(move |&k| (self.places[k] - place).norm() <= near)
+    }
+}
+
 /// The markers and bodies that elements other than outputs use.
 struct Uses {
     /// markers that anything names
@@ -263,52 +345,48 @@ impl Uses {
 
     /// Pairs of markers on each other, or on the same z axis, that no constraint or force names, of
     /// two bodies that nothing ties to each other, where no joint stands; the marker on ground
-    /// second. `chosen`: by whether nothing at all names the first and the second of a pair.
+    /// second. Two at most: more are no single joint that was forgotten. `chosen`: by whether
+    /// nothing at all names the first and the second of a pair.
     fn pairs(&self, model: &Model, chosen: impl Fn(bool, bool) -> bool) -> Vec<(u32, u32)> {
         let idle = model.markers.keys().filter(|m| !self.ends.contains(m));
-        let idle: Vec<(u32, ElementId, Frame<f64>)> = idle
+        let idle: Vec<Idle> = idle
             .filter_map(|&m| Some((m, model.body_of(m)?, marker_frame(model, m)?)))
             .collect();
         let far = idle
             .iter()
             .fold(0.0, |far: f64, m| far.max(m.2.position.norm()));
-        let on = |a: Vec3<f64>, b: Vec3<f64>| (a - b).norm() <= TOUCHING * far;
+        if far == 0.0 {
+            return Vec::new();
+        }
+        let near = TOUCHING * far;
+        let joints = Sorted::of(&self.joints);
         let moves = |id: ElementId| model.body(id).is_some_and(|b| !b.ground);
-        let neighbours = |id: ElementId| self.tied.iter().filter(|t| t.contains(&id)).count();
+        let mut neighbours: BTreeMap<ElementId, usize> = BTreeMap::new();
+        for body in self.tied.iter().flatten() {
+            *neighbours.entry(*body).or_default() += 1;
+        }
+        let neighbours = |id: ElementId| neighbours.get(&id).copied().unwrap_or(0);
         let joined = |id: ElementId| !moves(id) || neighbours(id) > 0;
         // what is tied to several others has its place; markers there may be for measuring
         let hangs = |id: ElementId| moves(id) && neighbours(id) == 1;
         let unnamed = |m: u32| !self.named.contains(&m);
+        let is_one = |a: &Idle, b: &Idle| {
+            let mut bodies = [a.1, b.1];
+            bodies.sort();
+            bodies[0] != bodies[1]
+                && chosen(unnamed(a.0), unnamed(b.0))
+                && bodies.iter().all(|&b| joined(b))
+                && bodies.iter().any(|&b| hangs(b))
+                && !self.tied.contains(&bodies)
+                && joints.near(a.2.position, near).next().is_none()
+        };
         let mut found = Vec::new();
-        for (k, a) in idle.iter().enumerate() {
-            for b in &idle[k + 1..] {
-                let on_axis = || {
-                    let (z, w) = (a.2.rotation.column(2), b.2.rotation.column(2));
-                    let between = a.2.position - b.2.position;
-                    let turned = z.0[2].abs() < 1.0 - TOUCHING;
-                    turned
-                        && z.cross(w).norm() < TOUCHING
-                        && z.cross(between).norm() <= TOUCHING * far
-                };
-                let meet = on(a.2.position, b.2.position) || on_axis();
-                if far == 0.0
-                    || !meet
-                    || !chosen(unnamed(a.0), unnamed(b.0))
-                    || self.joints.iter().any(|&j| on(j, a.2.position))
-                {
-                    continue;
-                }
-                let mut bodies = [a.1, b.1];
-                bodies.sort();
-                let strangers = bodies[0] != bodies[1]
-                    && bodies.iter().all(|&b| joined(b))
-                    && bodies.iter().any(|&b| hangs(b))
-                    && !self.tied.contains(&bodies);
-                if strangers {
-                    found.push(if moves(a.1) { (a.0, b.0) } else { (b.0, a.0) });
-                }
+        meetings(&idle, near, |a, b| {
+            if is_one(a, b) {
+                found.push(if moves(a.1) { (a.0, b.0) } else { (b.0, a.0) });
             }
-        }
+            found.len() < 2
+        });
         found
     }
 
