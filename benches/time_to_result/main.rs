@@ -1,28 +1,41 @@
 //! The time from a file to files, and how it grows with the model: whole `cognate run` processes at sizes N and 2N, beside the part of
-//! it that solves.
+//! it that solves, and beside MuJoCo where `python3` has it.
 //!
 //! `cargo bench --bench time_to_result`, or `cargo bench --bench time_to_result -- chain`: only families whose names contain a word;
 //! `-- chain 4`: four sizes, each twice the one before. The slope is that of log time over log size between the last two sizes: 1 is
 //! linear.
 
+mod mujoco;
+
+use mujoco::Peer;
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-/// A family of models: its name, its first size, the dataset of a size.
-type Family = (&'static str, usize, fn(usize) -> Dataset);
+/// A family of models: its name, its first size, the dataset of a size, and the same in MuJoCo's language where it can say it.
+type Family = (
+    &'static str,
+    usize,
+    fn(usize) -> Dataset,
+    Option<fn(usize) -> String>,
+);
 
 const FAMILIES: &[Family] = &[
-    ("independent four-bars", 125, four_bars),
-    ("chain", 160, chain),
-    ("free parts", 250, free_parts),
-    ("scissor lift", 10, scissor_lift),
-    ("truss", 5, truss),
-    ("contacts", 100, contacts),
-    ("frictions", 100, frictions),
-    ("pairs of coupled wheels", 100, coupled_wheels),
-    ("chain of variables under a motion", 1000, variables),
+    (
+        "independent four-bars",
+        125,
+        four_bars,
+        Some(mujoco::four_bars),
+    ),
+    ("chain", 160, chain, Some(mujoco::chain)),
+    ("free parts", 250, free_parts, Some(mujoco::free_parts)),
+    ("scissor lift", 10, scissor_lift, None),
+    ("truss", 5, truss, None),
+    ("contacts", 100, contacts, Some(mujoco::contacts)),
+    ("frictions", 100, frictions, None),
+    ("pairs of coupled wheels", 100, coupled_wheels, None),
+    ("chain of variables under a motion", 1000, variables, None),
 ];
 
 /// Runs of a size, of which the fastest counts.
@@ -42,27 +55,39 @@ fn main() {
     let folder =
         std::env::temp_dir().join(format!("cognate-time-to-result-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder for models");
+    let peer = Peer::found();
+    println!("{}", peer.told());
     println!(
-        "{:36}{:>8}{:>14}{:>14}{:>8}",
-        "", "N", "file to files", "solving", "slope"
+        "{:36}{:>8}{:>14}{:>14}{:>8}{:>14}",
+        "", "N", "file to files", "solving", "slope", "MuJoCo"
     );
-    for (name, first, dataset) in FAMILIES {
+    for (name, first, dataset, other) in FAMILIES {
         if word.is_some_and(|w| !name.contains(w.as_str())) {
             continue;
         }
         let mut before: Option<f64> = None;
         for n in (0..sizes).map(|k| first << k) {
             write_model(&folder, dataset(n));
+            let other = other.map(|xml| write_other(&folder, xml(n)));
+            let mut theirs = f64::INFINITY;
             let mut best = (f64::INFINITY, 0.0);
             for _ in 0..RUNS {
                 let (whole, solving) = run(&folder);
                 if whole < best.0 {
                     best = (whole, solving);
                 }
+                if let Some(seconds) = other.as_deref().and_then(|file| peer.run(file)) {
+                    theirs = theirs.min(seconds);
+                }
             }
             let slope = before.map_or(String::new(), |b| format!("{:.2}", (best.0 / b).log2()));
             let (whole, solving) = (milliseconds(best.0), milliseconds(best.1));
-            println!("{name:36}{n:>8}{whole:>14}{solving:>14}{slope:>8}");
+            let theirs = if theirs.is_finite() {
+                milliseconds(theirs)
+            } else {
+                "–".into()
+            };
+            println!("{name:36}{n:>8}{whole:>14}{solving:>14}{slope:>8}{theirs:>14}");
             before = Some(best.0);
         }
     }
@@ -77,6 +102,13 @@ fn write_model(folder: &Path, dataset: Dataset) {
     let script = "model.adm\nmodel\nSIMULATE/DYNAMIC, END=0.01, STEPS=1\nSTOP\n";
     std::fs::write(folder.join("model.adm"), dataset.end()).expect("the dataset is written");
     std::fs::write(folder.join("model.acf"), script).expect("the script is written");
+}
+
+/// Writes a model in MuJoCo's language; returns its file.
+fn write_other(folder: &Path, xml: String) -> PathBuf {
+    let file = folder.join("model.xml");
+    std::fs::write(&file, xml).expect("the model is written");
+    file
 }
 
 /// Runs the model in a process of its own; returns the seconds it took, and those of it that it solved.
