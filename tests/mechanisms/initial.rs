@@ -1,7 +1,7 @@
 //! Initial conditions of joints and parts: where and how fast a dynamic simulation begins; kinematics and statics do not ask for them.
 
 use crate::running;
-use running::{Analysis, first, go, last, session};
+use running::{Analysis, Options, first, go, last, session};
 
 /// The values of columns at the beginning, and the warnings.
 fn start(text: &str, columns: &[&str], analysis: Analysis) -> (Vec<f64>, Vec<String>) {
@@ -298,5 +298,85 @@ fn a_motion_by_acceleration_begins_as_the_mechanism_does_where_that_is_close_to_
     for text in [crank.to_string(), format!("{door}{crank}")] {
         let (found, _) = start(&text, &["WZ(90,91)"], Analysis::Dynamic);
         near(&found, &[2.0]);
+    }
+}
+
+/// Two rods in a row, the first begins to turn at 3 rad/s; `unit`: how many units of length a metre is, `at`: where the first hinge
+/// is, in metres; `begins`: what makes it turn.
+fn rods(unit: f64, at: [f64; 2], second: &str, begins: &str) -> String {
+    let [x, y] = at.map(|x| x * unit);
+    let (long, half, inertia) = (unit, 0.5 * unit, 0.1 * unit * unit);
+    format!(
+        "PART/2, MASS=1, CM=20, IP={inertia},{inertia},{inertia}, QG={x},{y},0\nMARKER/20, PART=2, QP={half},0,0\nMARKER/21, PART=2\n\
+         MARKER/22, PART=2, QP={long},0,0\nMARKER/11, PART=1, QP={x},{y},0\n\
+         PART/3, {}, QG={},{y},0\nMARKER/30, PART=3, QP={half},0,0\nMARKER/31, PART=3\n\
+         JOINT/1, REVOLUTE, I=21, J=11{begins}\nJOINT/2, REVOLUTE, I=31, J=22\n",
+        second.replace("INERTIA", &format!("{inertia},{inertia},{inertia}")),
+        x + long
+    )
+}
+
+#[test]
+fn what_nobody_gives_a_velocity_begins_as_if_the_rest_were_struck_whatever_the_units_and_the_place()
+{
+    // the second rod turns as its blow at the end demands: m c (ω L + c w) + I w = 0
+    let (m, c, inertia) = (2.0, 0.5, 0.1);
+    let struck = -3.0 * m * c / (m * c * c + inertia);
+    let motion = "\nMOTION/1, JOINT=1, ROTATION, FUNCTION=3*TIME";
+    for begins in [", IC=0,3", motion] {
+        for (unit, at) in [
+            (1.0, [0.0, 0.0]),
+            (1000.0, [0.0, 0.0]),
+            (0.01, [0.0, 0.0]),
+            (1.0, [1000.0, -300.0]),
+        ] {
+            let text = rods(unit, at, "MASS=2, CM=30, IP=INERTIA", begins);
+            let columns = ["WZ(20)", "WZ(30)"];
+            let (found, warnings) = start(&text, &columns, Analysis::Dynamic);
+            near(&found, &[3.0, struck]);
+            assert!(warnings.is_empty(), "{warnings:?}");
+        }
+    }
+}
+
+#[test]
+fn velocities_that_contradict_are_met_as_far_as_may_be_in_any_units() {
+    // a hinge does not let the mass move along its rod: 3 rad/s would be 1.5 across, not 1
+    let mut all = Vec::new();
+    for unit in [1.0, 1000.0, 0.01] {
+        let text = rods(unit, [0.0; 2], "MASS=2, CM=30, IP=INERTIA", "").replace(
+            "PART/2, MASS=1",
+            &format!("PART/2, VY={unit}, WZ=3, MASS=1"),
+        );
+        let (found, warnings) = start(&text, &["WZ(20)", "WZ(30)"], Analysis::Dynamic);
+        assert_eq!(warnings.len(), 2, "{warnings:?}");
+        all.push(found);
+    }
+    near(&all[1], &all[0]);
+    near(&all[2], &all[0]);
+    assert!(all[0][0] > 2.0 && all[0][0] < 3.0, "{all:?}");
+}
+
+#[test]
+fn a_session_begins_anew_with_the_velocities_of_its_masses() {
+    let text = |m: f64| {
+        rods(
+            1.0,
+            [0.0; 2],
+            &format!("MASS={m}, CM=30, IP=INERTIA"),
+            ", IC=0,3",
+        )
+    };
+    let struck = |m: f64| -3.0 * m * 0.5 / (m * 0.25 + 0.1);
+    let options = Options {
+        keep_start: true,
+        ..running::options(&["WZ(30)"], 1e-6)
+    };
+    let mut session = running::begin(running::model(&text(2.0)), "rods", options);
+    for m in [2.0, 3.0, 2.0, 5.0] {
+        session.reset();
+        session.model.parts.entry(3).or_default().mass = m;
+        go(&mut session, Analysis::Dynamic, 0.01, 1);
+        near(&[first(&session, "WZ(30)")], &[struck(m)]);
     }
 }

@@ -181,7 +181,7 @@ impl Session {
         if let Some(said) = stopped {
             return Err(said);
         }
-        Ok(v.ok().map(|v| (start, v)))
+        Ok(v.ok().map(|begun| (start, begun.v)))
     }
 }
 

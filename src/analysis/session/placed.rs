@@ -1,13 +1,15 @@
 //! A place that is kept: where a model was assembled, for models that differ from it in their loads
 //! alone.
 //!
-//! Masses, springs and gravity have no say in where parts are put and how fast they move at first:
-//! constraints read places and time alone. So what a dataset with other loads would be assembled to
-//! is known, to the last bit; what forces say about the place is asked anew.
+//! Masses, springs and gravity have no say in where parts are put: constraints read places and time
+//! alone. So what a dataset with other loads would be assembled to is known, to the last bit; what
+//! forces say about the place is asked anew. How fast parts move at first is known, too, where
+//! masses have no say in it or are the same.
 
 use super::Session;
 use super::state_at_start::Start;
 use crate::analysis::start::assemble::Assembly;
+use crate::analysis::start::velocities::Beginning;
 use crate::analysis::warning::Warning;
 use crate::model::Model;
 use crate::scene::Scene;
@@ -34,7 +36,7 @@ pub(super) struct Found {
 }
 
 /// Velocities to start with, and the warnings of those that are not met.
-pub(super) type Velocities = (Vec<f64>, Vec<Warning>);
+pub(super) type Velocities = (Beginning, Vec<Warning>);
 
 /// A model that was assembled, and its place.
 #[derive(Clone, Debug)]
@@ -89,6 +91,15 @@ fn are_placed_alike(a: &Scene, b: &Scene) -> bool {
     counts(a) == counts(b) && frames(a).zip(frames(b)).all(same)
 }
 
+/// Returns whether links have the masses and inertias that they have in another scene.
+fn are_as_heavy(a: &Scene, b: &Scene) -> bool {
+    a.links.iter().zip(&b.links).all(|(a, b)| {
+        a.mass.to_bits() == b.mass.to_bits()
+            && are_same(&a.moment.0, &b.moment.0)
+            && are_same(a.inertia.0.as_flattened(), b.inertia.0.as_flattened())
+    })
+}
+
 fn frames(scene: &Scene) -> impl Iterator<Item = &Frame<f64>> {
     let links = scene.links.iter().map(|l| &l.placement);
     let parts = scene.parts.iter().flat_map(|p| [&p.frame, &p.initial]);
@@ -109,9 +120,11 @@ impl Placed {
         Some(self.found.assembly.clone())
     }
 
-    /// Returns the velocities of that place.
-    pub fn velocities(&self) -> Velocities {
-        self.velocities.clone()
+    /// Returns the velocities of that place; `None`: they depend on masses, and those of `scene`
+    /// are others.
+    pub fn velocities(&self, scene: &Scene) -> Option<Velocities> {
+        let is_known = !self.velocities.0.is_weighed || are_as_heavy(&self.drawn.scene, scene);
+        is_known.then(|| self.velocities.clone())
     }
 }
 

@@ -12,6 +12,7 @@ use super::state_at_start::Start;
 use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
 use crate::analysis::look::Look;
 use crate::analysis::start::assemble::{self, Assembly};
+use crate::analysis::start::velocities::Beginning;
 use crate::analysis::start::{
     coincident, embedded, initial_conditions, leap, misalignment, placement, velocities,
 };
@@ -111,15 +112,17 @@ impl Session {
             session.begin_rates(&mut start, look)
         })?;
         start.begin_turns(self.carried.as_ref());
-        let (v, unmet) = match before.filter(|_| found.is_none()) {
-            Some(placed) => placed.velocities(),
+        let before = before.filter(|_| found.is_none());
+        let (begun, unmet) = match before.and_then(|placed| placed.velocities(&start.scene)) {
+            Some(velocities) => velocities,
             None => self.looking(SetUp::Assembling, watch, |session, look| {
                 session.velocities(&mut start, moved.as_ref(), look)
             })?,
         };
         if let Some(found) = found.filter(|_| self.keeps_place(inputs)) {
-            self.keep_place(mode, found, (v.clone(), unmet.clone()));
+            self.keep_place(mode, found, (begun.clone(), unmet.clone()));
         }
+        let v = begun.v;
         assembly.warnings.extend(unmet);
         phase.end(&mut self.run.record.seconds, |s| &mut s.assemble);
         self.may_go_on(SetUp::Velocities, watch)?;
@@ -287,13 +290,13 @@ impl Session {
         look: Look<'_>,
     ) -> Result<Velocities, Vec<Diagnostic>> {
         let mode = start.mode;
-        let v = self.velocities_on_rows(start, moved, look)?;
+        let begun = self.velocities_on_rows(start, moved, look)?;
         if self.carried.is_some() || mode != DYNAMIC && mode != INITIAL_CONDITIONS {
-            return Ok((v, Vec::new()));
+            return Ok((begun, Vec::new()));
         }
         let (here, t, q, x) = (start.here(), start.t, &start.q, &start.x);
-        let unmet = velocities::unmet(here, &self.model, t, (q, &v, x));
-        Ok((v, unmet.into_iter().map(Warning::from).collect()))
+        let unmet = velocities::unmet(here, &self.model, t, (q, &begun.v, x));
+        Ok((begun, unmet.into_iter().map(Warning::from).collect()))
     }
 
     fn velocities_on_rows(
@@ -301,13 +304,13 @@ impl Session {
         start: &mut Start,
         moved: Option<&Model>,
         look: Look<'_>,
-    ) -> Result<Vec<f64>, Vec<Diagnostic>> {
+    ) -> Result<Beginning, Vec<Diagnostic>> {
         let at_rest = self.is_at_rest();
         if start.mode == STATIC || start.mode == LINEAR && at_rest {
-            return Ok(vec![0.0; start.scene.layout.n_v]);
+            return Ok(Beginning::fixed(vec![0.0; start.scene.layout.n_v]));
         }
         if let Some(v) = start.v.take() {
-            return Ok(v);
+            return Ok(Beginning::fixed(v));
         }
         let given = moved.filter(|_| !at_rest).unwrap_or(&self.model);
         let at = (start.t, &start.q[..], &start.x[..]);

@@ -1,8 +1,11 @@
-//! Velocities to start with: those nearest to the dataset's that satisfy the rows.
+//! Velocities to start with: those of the dataset as far as the rows permit them, and otherwise
+//! those of least kinetic energy: those of a mechanism at rest that is struck where velocities are
+//! given.
 
 use super::assemble::{
     DEPENDENT, EMPTY, directions, least_change, numbers, parts, rank_while, rows_at,
 };
+use super::given_velocities::{Given, GivenVelocities, Level};
 use super::initial_conditions::of_joints;
 use super::tangents::Tangents;
 use crate::analysis::direction::Direction;
@@ -11,12 +14,12 @@ use crate::analysis::quantity::{length, short};
 use crate::analysis::warning::ConditionWarning;
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::{self, ElementId, ElementKind, InitialQuantity, Model};
-use crate::numeric::connected::{Block, SparseRow, connected};
+use crate::numeric::connected::{Block, SparseRow};
 use crate::scalar::Jet;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
-use crate::scene::programs::weights;
-use crate::scene::{LinkIx, Scene, Source};
+use crate::scene::programs::{weights, weights_at};
+use crate::scene::{LinkIx, Scene};
 use crate::space::{Frame, MarkerState, Mat3, Vec3};
 use nalgebra::{DMatrix, DVector};
 
@@ -61,8 +64,25 @@ fn prescribed_too_much(
     ))
 }
 
-/// Returns the velocities nearest to those of the dataset that satisfy the rows: given ones first,
-/// then the rest as small as may be   (n_v)
+/// Velocities to start with.
+#[derive(Clone, Debug)]
+pub(in crate::analysis) struct Beginning {
+    /// (n_v)
+    pub v: Vec<f64>,
+    /// with other masses they would be others: rows and given velocities leave some of them free
+    pub is_weighed: bool,
+}
+
+impl Beginning {
+    /// Returns velocities in which masses have no say.
+    pub fn fixed(v: Vec<f64>) -> Self {
+        let is_weighed = false;
+        Self { v, is_weighed }
+    }
+}
+
+/// Returns the velocities that satisfy the rows: those that the dataset gives come first, those of
+/// constraints before those of parts; the rest has the least kinetic energy   (n_v)
 ///
 /// # Errors
 /// When the motions ask for velocities that the rows forbid.
@@ -73,7 +93,7 @@ pub fn velocities(
     q: &[f64],
     x: &[f64],
 ) -> Result<Vec<f64>, Vec<Diagnostic>> {
-    velocities_while(scene, model, (t, q, x), &mut || Ok(()))
+    velocities_while(scene, model, (t, q, x), &mut || Ok(())).map(|begun| begun.v)
 }
 
 /// The same, asking `look` on the way whether to go on.
@@ -85,14 +105,13 @@ pub(in crate::analysis) fn velocities_while(
     model: &Model,
     (t, q, x): (f64, &[f64], &[f64]),
     look: Look<'_>,
-) -> Result<Vec<f64>, Vec<Diagnostic>> {
+) -> Result<Beginning, Vec<Diagnostic>> {
     let n = scene.layout.n_v;
     let (_, gradient, drift) = rows_at(scene, t, q, x);
     look()?;
     // v = v₀ + N z, with N the null space of the rows
-    let w = vec![1.0; n];
     let firm = without_empty(scene, &gradient);
-    let mut v = least_change(&firm, &w, &(-&drift));
+    let mut v = least_change(&firm, &weights_at(&scene, size_of(&scene)), &(-&drift));
     look()?;
     let entries = gradient.iter().flatten();
     let largest = entries.fold(0.0, |m: f64, e| m.max(e.1.abs()));
@@ -106,13 +125,13 @@ pub(in crate::analysis) fn velocities_while(
     }
     let given = GivenVelocities::collect(scene, model, (t, q, x), (&gradient, &v));
     if given.are_met {
-        return Ok(v.iter().copied().collect());
+        return Ok(Beginning::fixed(v.iter().copied().collect()));
     }
-    let levels = [&given.of_constraints, &given.of_parts, &given.rest];
+    let levels = given.levels();
     // what shares no velocity is looked at apart
     let all = levels.iter().flat_map(|level| &level.rows);
     let all: Vec<SparseRow> = gradient.iter().chain(all).cloned().collect();
-    let mut changed = false;
+    let (mut changed, mut is_weighed) = (false, false);
     for part in parts(&all, n) {
         look()?;
         let own = Part::new(&part, &firm, levels);
@@ -122,6 +141,7 @@ pub(in crate::analysis) fn velocities_while(
         }
         changed = true;
         let (nearest, left) = own.nearest(here, look)?;
+        is_weighed |= left.ncols() > 0;
         for (&k, x) in part.columns.iter().zip(nearest.iter()) {
             v[k] = *x;
         }
@@ -149,13 +169,18 @@ pub(in crate::analysis) fn velocities_while(
         }
     }
     if !changed {
-        return Ok(v.iter().copied().collect());
+        return Ok(Beginning::fixed(v.iter().copied().collect()));
     }
     // without rounding dust where the dataset says zero
     let size = v.amax();
-    Ok(v.iter()
-        .map(|x| if x.abs() < 1e-14 * size { 0.0 } else { *x })
-        .collect())
+    let v = (v.iter()).map(|x| if x.abs() < 1e-14 * size { 0.0 } else { *x });
+    let v = v.collect();
+    Ok(Beginning { v, is_weighed })
+}
+
+/// Returns the length in which ways are counted beside angles.
+pub(super) fn size_of(scene: &Scene) -> f64 {
+    if scene.size > 0.0 { scene.size } else { 1.0 }
 }
 
 /// Returns warnings of the joints whose initial rate is not that of their IC, and of the parts
@@ -274,7 +299,11 @@ impl Speeds {
 
 /// Returns the velocity of a part's centre of mass in the axes of VM, and its angular velocity in
 /// those of WM; `None`: it has no CM.
-fn components(scene: &Scene, data: &model::Part, at: &Equations<'_, f64>) -> Option<[[f64; 3]; 2]> {
+pub(super) fn components(
+    scene: &Scene,
+    data: &model::Part,
+    at: &Equations<'_, f64>,
+) -> Option<[[f64; 3]; 2]> {
     let frame = |m: Option<u32>| {
         let &marker = scene.marker_of.get(&m?)?;
         Some(at.marker(marker))
@@ -296,12 +325,12 @@ struct Part {
     /// the rows   (m × n)
     g: DMatrix<f64>,
     /// what is given, the first first: matrix, right side
-    levels: [(DMatrix<f64>, DVector<f64>); 3],
+    levels: [(DMatrix<f64>, DVector<f64>); Level::ALL],
 }
 
 impl Part {
     /// Collects them: rows of `part` count through the rows of G, then through those of each level.
-    fn new(part: &Block, gradient: &[SparseRow], levels: [&Given; 3]) -> Self {
+    fn new(part: &Block, gradient: &[SparseRow], levels: [&Given; Level::ALL]) -> Self {
         let n = part.columns.len();
         let dense = |rows: &[&SparseRow]| {
             let rows: Vec<Vec<f64>> = rows.iter().map(|row| part.dense(row)).collect();
@@ -349,9 +378,10 @@ impl Part {
         Ok(combination.filter(|terms| !terms.is_empty()).collect())
     }
 
-    /// Returns how far velocities are from those that are not given, but wished to be zero.
+    /// Returns how far velocities are from rest, by their energy; without masses by their size.
     fn off(&self, v: &DVector<f64>) -> f64 {
-        let [.., (a, b)] = &self.levels;
+        let [.., energy, rest] = &self.levels;
+        let (a, b) = if energy.0.nrows() > 0 { energy } else { rest };
         (b - a * v).norm()
     }
 
@@ -365,8 +395,10 @@ impl Part {
         let mut space = directions(&rank_while(&self.g, look)?, self.g.ncols());
         let mut left = space.clone();
         // each level as well as may be within the freedom that the levels before leave
-        for (a, b) in &self.levels {
-            left = space.clone();
+        for (level, (a, b)) in self.levels.iter().enumerate() {
+            if level == Level::Energy as usize {
+                left = space.clone();
+            }
             if space.ncols() == 0 || a.nrows() == 0 {
                 continue;
             }
@@ -419,255 +451,26 @@ pub(in crate::analysis) fn nearest_velocities(
     (given + change).iter().copied().collect()
 }
 
-/// Linear equations that velocities should satisfy.
-#[derive(Default)]
-struct Given {
-    rows: Vec<SparseRow>,
-    right: Vec<f64>,
-}
-
-/// Velocities that the dataset gives: those of constraints (IC of joints, VEL of contacts), which
-/// go before those of parts, and zero for all others.
-struct GivenVelocities {
-    of_constraints: Given,
-    of_parts: Given,
-    rest: Given,
-    /// all of them are those that the rows permit
-    are_met: bool,
-}
-
-/// The origin of a velocity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Level {
-    Constraint,
-    Part,
-    Rest,
-}
-
-impl GivenVelocities {
-    /// Collects them at an instant `(t, q, x)`. Trees whose velocities in `v`, which the rows
-    /// permit, are those given already need no coefficients: a stored zero stands for them.
-    fn collect(
-        scene: Configured<'_>,
-        model: &Model,
-        (t, q, x): (f64, &[f64], &[f64]),
-        (gradient, v): (&[SparseRow], &DVector<f64>),
-    ) -> Self {
-        let n = scene.layout.n_v;
-        // velocities are linear in v: an evaluation for motions, and one for a coordinate of each
-        // tree
-        let (tree_of, coordinates) = trees(&scene, model);
-        let evaluate = |v: &[f64]| {
-            let at = Equations::new(scene, &numbers(scene, t, q, v, x));
-            part_velocities(&scene, model, &at)
-        };
-        let (zero, targets) = evaluate(&vec![0.0; n]);
-        let tree = |target: &Target| target.link.map(|link| tree_of[link]);
-        let mut open = vec![false; coordinates.len()];
-        let mut are_met = true;
-        for (target, zero) in targets.iter().zip(&zero) {
-            if target.value != *zero {
-                are_met = false;
-                tree(target).into_iter().for_each(|tree| open[tree] = true);
-            }
-        }
-        open_beside(&mut open, &coordinates, gradient, v);
-        are_met &= !open.contains(&true);
-        let lengths = coordinates.iter().zip(&open).filter(|(_, open)| **open);
-        let most = lengths.map(|(tree, _)| tree.len()).max().unwrap_or(0);
-        let mut rows: Vec<SparseRow> = vec![Vec::new(); zero.len()];
-        for (row, target) in rows.iter_mut().zip(&targets) {
-            if let Some(tree) = tree(target).filter(|&tree| !open[tree]) {
-                row.extend(coordinates[tree].first().map(|&place| (place, 0.0)));
-            }
-        }
-        for k in 0..most {
-            let mut v = vec![0.0; n];
-            for (tree, _) in coordinates.iter().zip(&open).filter(|(_, open)| **open) {
-                if let Some(&place) = tree.get(k) {
-                    v[place] = 1.0;
-                }
-            }
-            let (values, _) = evaluate(&v);
-            for (r, target) in targets.iter().enumerate() {
-                let own = tree(target).filter(|&tree| open[tree]);
-                let place = own.and_then(|tree| coordinates[tree].get(k));
-                if let (Some(&place), true) = (place, values[r] != zero[r]) {
-                    rows[r].push((place, values[r] - zero[r]));
-                }
-            }
-        }
-        let mut found = Self {
-            of_constraints: Given::default(),
-            of_parts: Given::default(),
-            rest: Given::default(),
-            are_met,
-        };
-        for ((row, target), zero) in rows.into_iter().zip(targets).zip(zero) {
-            let level = match target.level {
-                Level::Constraint => &mut found.of_constraints,
-                Level::Part => &mut found.of_parts,
-                Level::Rest => &mut found.rest,
-            };
-            level.rows.push(row);
-            level.right.push(target.value - zero);
-        }
-        found
-    }
-}
-
-/// Opens the trees that move in `v`, and those that rows connect to open ones: what is given of one
-/// can change the velocities of the other.
-fn open_beside(
-    open: &mut [bool],
-    coordinates: &[Vec<usize>],
-    gradient: &[SparseRow],
-    v: &DVector<f64>,
-) {
-    let tied = |tree: &Vec<usize>| tree.iter().map(|&place| (place, 1.0)).collect();
-    let mut ties: Vec<SparseRow> = coordinates.iter().map(tied).collect();
-    ties.extend(gradient.iter().cloned());
-    let n_trees = coordinates.len();
-    for block in connected(&ties, v.len()) {
-        let trees = || block.rows.iter().filter(|&&r| r < n_trees);
-        let moves = block.columns.iter().any(|&k| v[k] != 0.0);
-        if moves || trees().any(|&tree| open[tree]) {
-            trees().for_each(|&tree| open[tree] = true);
-        }
-    }
-}
-
-/// Finds what moves together: trees of links, those joined whose velocities are given against each
-/// other. Returns the tree of each link, and the places in v of the coordinates of each tree.
-fn trees(scene: &Scene, model: &Model) -> (Vec<usize>, Vec<Vec<usize>>) {
-    let n = scene.links.len();
-    let join = |a: usize, b: usize| vec![(a, 1.0), (b, 1.0)];
-    let mut ties: Vec<SparseRow> = (0..n)
-        .map(|k| join(k, scene.links[k].parent.unwrap_or(k)))
-        .collect();
-    if !scene.cams.is_empty() {
-        ties.extend((1..n).map(|k| join(k - 1, k)));
-    }
-    for (id, ..) in of_joints(model) {
-        let joint = &model.joints[&id];
-        let link = |m: u32| scene.markers[*scene.marker_of.get(&m)?].link;
-        if let (Some(i), Some(j)) = (link(joint.i), link(joint.j)) {
-            ties.push(join(i, j));
-        }
-    }
-    for (&id, values) in &model.beginnings {
-        let has_rate = values
-            .keys()
-            .any(|q| matches!(q, InitialQuantity::VariableRate(_)));
-        let joint = model.joints.get(&id.number);
-        if let Some(joint) = joint.filter(|_| has_rate && id.kind == ElementKind::Joint)
-            && let [Some(i), Some(j)] = [joint.i, joint.j].map(|m| link_of(scene, m))
-        {
-            ties.push(join(i, j));
-        }
-    }
-    let mut tree_of = vec![0; n];
-    let trees = connected(&ties, n);
-    for (tree, links) in trees.iter().enumerate() {
-        links.columns.iter().for_each(|&link| tree_of[link] = tree);
-    }
-    let mut coordinates = vec![Vec::new(); trees.len()];
-    for c in &scene.coordinates {
-        if let Source::Free { v, .. } = c.source {
-            coordinates[tree_of[c.link]].push(v);
-        }
-    }
-    (tree_of, coordinates)
-}
-
-/// A velocity component of a part, or against another one: where its value comes from.
-struct Target {
-    level: Level,
-    value: f64,
-    /// a link of the tree that it depends on; `None`: it depends on none
-    link: LinkIx,
-}
-
-impl Target {
-    fn of_part(given: Option<f64>, link: LinkIx) -> Self {
-        let level = given.map_or(Level::Rest, |_| Level::Part);
-        let value = given.unwrap_or(0.0);
-        Self { level, value, link }
-    }
-
-    fn of_constraint(value: f64, link: LinkIx) -> Self {
-        let level = Level::Constraint;
-        Self { level, value, link }
-    }
-}
-
-/// Evaluates the velocity components of all parts as the dataset would give them, with origin and
-/// value of those that it gives; then joint rates.
-fn part_velocities(
-    scene: &Scene,
-    model: &Model,
-    at: &Equations<'_, f64>,
-) -> (Vec<f64>, Vec<Target>) {
-    let mut values = Vec::new();
-    let mut targets = Vec::new();
-    for part in &scene.parts {
-        let Some(data) = model.body(part.id) else {
-            continue;
-        };
-        let Some([v, w]) = components(scene, data, at) else {
-            continue;
-        };
-        values.extend(v.into_iter().chain(w));
-        let given = data.velocity.iter().chain(&data.angular_velocity);
-        targets.extend(given.map(|&given| Target::of_part(given, part.link)));
-    }
-    for (c, cam) in scene.cams.iter().enumerate() {
-        for (k, along) in at.cam_speeds(c).into_iter().enumerate() {
-            if let Some(given) = cam.velocity[k] {
-                values.push(along);
-                // with contacts all links are one tree
-                let link = (!scene.links.is_empty()).then_some(0);
-                targets.push(Target::of_constraint(given, link));
-            }
-        }
-    }
-    for JointRate {
-        id, found, wanted, ..
-    } in joint_rates(scene, model, at)
-    {
-        let joint = &model.joints[&id];
-        let link = |m: u32| scene.markers[*scene.marker_of.get(&m)?].link;
-        values.push(found);
-        targets.push(Target::of_constraint(
-            wanted,
-            link(joint.i).or_else(|| link(joint.j)),
-        ));
-    }
-    for rate in line_rates(scene, model, at) {
-        values.push(rate.found);
-        targets.push(Target::of_constraint(rate.wanted, rate.link));
-    }
-    (values, targets)
-}
-
 /// Returns the link that carries a marker; `None`: ground does, or it is not there.
-fn link_of(scene: &Scene, marker: u32) -> LinkIx {
+pub(super) fn link_of(scene: &Scene, marker: u32) -> LinkIx {
     scene.markers[*scene.marker_of.get(&marker)?].link
 }
 
 /// A rate that a comment line of ours gives.
-struct LineRate {
-    element: ElementId,
-    argument: &'static str,
+pub(super) struct LineRate {
+    pub element: ElementId,
+    pub argument: &'static str,
     /// a link that it depends on
-    link: LinkIx,
-    found: f64,
-    wanted: f64,
-    is_angle: bool,
+    pub link: LinkIx,
+    pub found: f64,
+    /// of the velocities that it is a difference of
+    pub size: f64,
+    pub wanted: f64,
+    pub is_angle: bool,
 }
 
 /// Returns the rates that comment lines of ours give joints and markers.
-fn line_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<LineRate> {
+pub(super) fn line_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<LineRate> {
     let mut all = Vec::new();
     for (&id, values) in model
         .beginnings
@@ -680,26 +483,30 @@ fn line_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<Line
                     model.joints.get(&id.number).and_then(|joint| {
                         let &(_, gauge) = joint.kind.row().variables.get(k)?;
                         let state = |m: u32| Some(at.marker(*scene.marker_of.get(&m)?));
-                        let (i, j) = (moving(&state(joint.i)?), moving(&state(joint.j)?));
+                        let (i, j) = (state(joint.i)?, state(joint.j)?);
                         let link = link_of(scene, joint.i).or_else(|| link_of(scene, joint.j));
-                        Some((gauge.value(&i, &j).first, link, gauge.is_angle()))
+                        let size = size_between(&i, &j, gauge.is_angle());
+                        let rate = gauge.value(&moving(&i), &moving(&j)).first;
+                        Some(((rate, size), link, gauge.is_angle()))
                     })
                 }
                 InitialQuantity::Rate(k) => scene.marker_of.get(&id.number).map(|&m| {
                     let state = at.marker(m);
+                    let turning = state.w_GM.norm();
                     let rate = match k {
-                        0..3 => state.v_GM.0[k],
-                        _ => state.w_GM.0[k - 3],
+                        0..3 => (state.v_GM.0[k], state.v_GM.norm() + turning * scene.size),
+                        _ => (state.w_GM.0[k - 3], turning),
                     };
                     (rate, scene.markers[m].link, k >= 3)
                 }),
                 InitialQuantity::Variable(_) | InitialQuantity::Place(_) => None,
             };
-            all.extend(found.map(|(found, link, is_angle)| LineRate {
+            all.extend(found.map(|((found, size), link, is_angle)| LineRate {
                 element: id,
                 argument: model.initial_quantity_name(id, quantity),
                 link,
                 found,
+                size,
                 wanted,
                 is_angle,
             }));
@@ -723,16 +530,28 @@ pub(in crate::analysis) fn moving(m: &MarkerState<f64>) -> Frame<Jet> {
     }
 }
 
+/// Returns how large the velocities are of which the rate between two markers is a difference.
+fn size_between(i: &MarkerState<f64>, j: &MarkerState<f64>, is_angle: bool) -> f64 {
+    let turning = i.w_GM.norm() + j.w_GM.norm();
+    if is_angle {
+        turning
+    } else {
+        i.v_GM.norm() + j.v_GM.norm() + (i.p_GM - j.p_GM).norm() * turning
+    }
+}
+
 /// The rate of a joint, and the one that it is asked to begin with.
-struct JointRate {
-    id: u32,
-    found: f64,
-    wanted: f64,
-    is_angle: bool,
+pub(super) struct JointRate {
+    pub id: u32,
+    pub found: f64,
+    /// of the velocities that it is a difference of
+    pub size: f64,
+    pub wanted: f64,
+    pub is_angle: bool,
 }
 
 /// Returns the rates of the joints of which an initial rate is asked.
-fn joint_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<JointRate> {
+pub(super) fn joint_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<JointRate> {
     let mut found = Vec::new();
     for (id, gauge, [_, rate]) in of_joints(model) {
         let joint = &model.joints[&id];
@@ -750,6 +569,7 @@ fn joint_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<Joi
         found.push(JointRate {
             id,
             found: own,
+            size: size_between(&i, &j, gauge.is_angle()),
             wanted: rate,
             is_angle: gauge.is_angle(),
         });
