@@ -208,6 +208,37 @@ impl Steps {
         self.n_registers as usize + self.extras.len()
     }
 
+    /// Calls `each` with the slots that a step reads or writes of which it does not say so itself:
+    /// what is called for it works on the frame.
+    pub(super) fn slots_of_called(&self, step: &Step, core: &Core, mut each: impl FnMut(u32)) {
+        match *step {
+            Step::Instruction { number } => {
+                let instruction = &core.code[number as usize];
+                each(instruction.to);
+                core.operands(instruction, each);
+            }
+            Step::Prepared { number } => {
+                let call = &self.prepared[number as usize];
+                let results = call.slopes.iter().chain([&call.value]).flatten();
+                call.variables.iter().chain(results).for_each(|&s| each(s));
+            }
+            Step::Circle { number } => {
+                let circle = &self.circles[number as usize];
+                let results = circle.results().as_flattened();
+                circle.angles().iter().chain(results).for_each(|&s| each(s));
+            }
+            Step::Input { .. }
+            | Step::Copy { .. }
+            | Step::Unary { .. }
+            | Step::Binary { .. }
+            | Step::SineCosine { .. }
+            | Step::Select { .. }
+            | Step::Unless { .. }
+            | Step::Branch { .. }
+            | Step::Go { .. } => {}
+        }
+    }
+
     /// Returns which steps are jumped to; the last element stands for the end.
     pub(super) fn jumped_to(&self) -> Vec<bool> {
         let mut is_target = vec![false; self.steps.len() + 1];

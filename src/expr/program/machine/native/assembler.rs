@@ -15,6 +15,8 @@ pub(super) enum Place {
     Slot(u32),
     /// a number among the inputs, which are lost with the first call
     Input(u32),
+    /// an output
+    Output(u32),
 }
 
 /// Instructions on doubles: prefix and code.
@@ -62,10 +64,13 @@ pub(super) enum When {
     Unordered,
 }
 
-/// The registers for addresses: inputs, and the frame in a function with calls and in one without.
+/// The registers for addresses: inputs; frame and outputs in a function without calls and in one
+/// with calls.
 const RSI: u8 = 6;
-const RBX: u8 = 3;
 const RDI: u8 = 7;
+const RDX: u8 = 2;
+const RBX: u8 = 3;
+const RBP: u8 = 5;
 
 /// A jump whose distance is not known yet: the place of the distance in the code.
 #[derive(Clone, Copy, Debug)]
@@ -79,12 +84,12 @@ pub(super) struct Assembler {
 }
 
 impl Assembler {
-    /// Begins a function that is given the frame and the inputs.
+    /// Begins a function that is given the frame, the inputs and a place for the outputs.
     pub(super) fn new(calls: bool) -> Self {
         let mut code = Vec::new();
         if calls {
-            // push rbx (that aligns the stack); rbx = rdi
-            code.extend([0x53, 0x48, 0x89, 0xFB]);
+            // push rbx, rbp, rax (that aligns the stack); rbx = rdi; rbp = rdx
+            code.extend([0x53, 0x55, 0x50, 0x48, 0x89, 0xFB, 0x48, 0x89, 0xD5]);
         }
         Self { code, calls }
     }
@@ -92,7 +97,8 @@ impl Assembler {
     /// Ends it; returns the code of the function, whose result is in the vector register 0.
     pub(super) fn finish(mut self) -> Vec<u8> {
         if self.calls {
-            self.code.push(0x5B);
+            // pop rcx, rbp, rbx
+            self.code.extend([0x59, 0x5D, 0x5B]);
         }
         self.code.push(0xC3);
         self.code
@@ -117,8 +123,9 @@ impl Assembler {
         }
     }
 
-    pub(super) fn store(&mut self, x: Xmm, slot: u32) {
-        self.operate(STORE, x, Place::Slot(slot));
+    /// Stores a number in memory.
+    pub(super) fn store(&mut self, x: Xmm, place: Place) {
+        self.operate(STORE, x, place);
     }
 
     /// Sets all bits of `x` where it stands so to `place`, else none.
@@ -195,6 +202,8 @@ impl Assembler {
             Place::Slot(k) if self.calls => (RBX, k),
             Place::Slot(k) => (RDI, k),
             Place::Input(k) => (RSI, k),
+            Place::Output(k) if self.calls => (RBP, k),
+            Place::Output(k) => (RDX, k),
         };
         if high != 0 {
             self.code.push(0x44);

@@ -6,14 +6,15 @@
 //!
 //! # Safety
 //!
-//! The code reads and writes slots and inputs that the steps name. [`Steps::are_sound`] has seen
-//! that all of them are inside the frame and inside the inputs, and that jumps lead forward; steps
-//! that are not sound are not translated. That frame and inputs are as long as they must be is
-//! asserted before each run.
+//! The code reads and writes slots and inputs that the steps name, and as many outputs as the
+//! program has. [`Steps::are_sound`] has seen that all of them are inside the frame and inside the
+//! inputs, and that jumps lead forward; steps that are not sound are not translated. That frame,
+//! inputs and outputs are as long as they must be is checked before each run.
 
 mod assembler;
 mod calls;
 mod columns;
+mod joins;
 mod needs;
 mod translate;
 
@@ -35,14 +36,18 @@ static N_MAPPINGS: AtomicUsize = AtomicUsize::new(0);
 /// Most slots and inputs, whose distances in bytes are numbers of 31 bits.
 const MOST_NUMBERS: usize = 1 << 28;
 
-/// A function that works on a frame and reads inputs; returns the first output.
-type Entry = unsafe extern "sysv64" fn(frame: *mut f64, inputs: *const f64) -> f64;
+/// A function that works on a frame, reads inputs and writes outputs; returns the first of these.
+type Entry =
+    unsafe extern "sysv64" fn(frame: *mut f64, inputs: *const f64, outputs: *mut f64) -> f64;
 
 /// Code that can run.
 pub(super) struct Native {
     entry: Entry,
     n_slots: usize,
     n_inputs: usize,
+    n_outputs: usize,
+    /// slots, and behind them outputs
+    frame_length: usize,
     /// where the code stands
     _code: Mapping,
     /// the steps that it calls, by address
@@ -79,21 +84,36 @@ impl Native {
             entry,
             n_slots: steps.n_slots(),
             n_inputs: core.n_inputs,
+            n_outputs: core.outputs.len(),
+            frame_length: steps.n_slots() + core.outputs.len(),
             _code: code,
             _called: called,
         })
     }
 
     /// Runs over a frame whose constants are in place, and returns the first output; `None` where
-    /// frame or inputs are too short.
+    /// frame or inputs are too short, or there are not as many places as outputs.
     #[inline(always)]
     #[allow(unsafe_code)]
-    pub(super) fn run(&self, frame: &mut [f64], inputs: &[f64]) -> Option<f64> {
-        if frame.len() < self.n_slots || inputs.len() < self.n_inputs {
+    pub(super) fn run(&self, frame: &mut [f64], inputs: &[f64], out: &mut [f64]) -> Option<f64> {
+        if frame.len() < self.n_slots || inputs.len() < self.n_inputs || out.len() != self.n_outputs
+        {
             return None;
         }
-        // SAFETY: the code stays inside frame and inputs; see the head of this file
-        Some(unsafe { (self.entry)(frame.as_mut_ptr(), inputs.as_ptr()) })
+        // SAFETY: the code stays inside frame, inputs and outputs; see the head of this file
+        Some(unsafe { (self.entry)(frame.as_mut_ptr(), inputs.as_ptr(), out.as_mut_ptr()) })
+    }
+
+    /// Does as [`Native::run`], the outputs behind the slots in the frame.
+    #[inline(always)]
+    #[allow(unsafe_code)]
+    pub(super) fn run_inside(&self, frame: &mut [f64], inputs: &[f64]) -> Option<f64> {
+        if frame.len() < self.frame_length || inputs.len() < self.n_inputs {
+            return None;
+        }
+        let frame = frame.as_mut_ptr();
+        // SAFETY: as above; the outputs are behind the slots, and both inside the frame
+        Some(unsafe { (self.entry)(frame, inputs.as_ptr(), frame.add(self.n_slots)) })
     }
 }
 
