@@ -69,6 +69,11 @@ impl Program {
         self.machine.core()
     }
 
+    /// Returns the code, to be kept.
+    pub(super) fn shared_core(&self) -> Arc<Core> {
+        Arc::clone(self.machine.core())
+    }
+
     /// Returns the same program, run over plain numbers by one engine from the first run on;
     /// `None` where that engine is not to be had. For comparing the two: by itself a program
     /// changes to the faster when that pays.

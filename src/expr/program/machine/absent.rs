@@ -26,6 +26,9 @@ impl Native {
 pub(in crate::expr::program) enum Columns {}
 
 impl Columns {
+    pub(in crate::expr::program) fn are_to_be_had() -> bool {
+        false
+    }
     pub(in crate::expr::program) fn can(_: &Instruction) -> bool {
         false
     }

@@ -33,6 +33,7 @@ mod steps;
 
 use super::code::Core;
 use crate::clock::Moment;
+pub(super) use lower::written_out;
 pub(super) use native::Columns;
 use native::Native;
 use std::cell::Cell;
@@ -120,7 +121,7 @@ impl Machine {
         Self { core, made }
     }
 
-    pub(super) fn core(&self) -> &Core {
+    pub(super) fn core(&self) -> &Arc<Core> {
         &self.core
     }
 
