@@ -2,7 +2,8 @@
 //!
 //! Numbers are doubles in the low halves of the sixteen vector registers, or stand in the frame;
 //! the arithmetic is that of SSE2, which every processor of this kind has and which the compiler
-//! uses for the same operations: the bits are the same.
+//! uses for the same operations: the bits are the same. AVX has the same instructions with a place
+//! of its own for the result, which saves copies.
 
 /// A vector register, 0 … 15.
 pub(super) type Xmm = u8;
@@ -110,6 +111,19 @@ impl Assembler {
         self.operands(op.1, x, place);
     }
 
+    /// Emits `x ← a op place`, by AVX.
+    pub(super) fn operate_on(&mut self, op: Instruction, x: Xmm, a: Xmm, place: Place) {
+        // the bits of register numbers stand inverted; 3 is the prefix F2
+        let high = (x >> 3 ^ 1) << 7;
+        let rest = (!a & 15) << 3 | 3;
+        match place {
+            Place::Xmm(y) if y >= 8 => self.code.extend([0xC4, high | 1 << 6 | 1, rest]),
+            _ => self.code.extend([0xC5, high | rest]),
+        }
+        self.code.push(op.1);
+        self.address(x & 7, place);
+    }
+
     /// Emits `x ← y`, all of it.
     pub(super) fn copy(&mut self, x: Xmm, y: Xmm) {
         self.operands(0x28, x, Place::Xmm(y));
@@ -189,14 +203,23 @@ impl Assembler {
 
     /// Emits the rest of an instruction: extension of register numbers, code, operands.
     fn operands(&mut self, code: u8, x: Xmm, place: Place) {
-        let (low, high) = (x & 7, x >> 3);
+        let last_high = match place {
+            Place::Xmm(y) => y >> 3,
+            _ => 0,
+        };
+        let extension = x >> 3 << 2 | last_high;
+        if extension != 0 {
+            self.code.push(0x40 | extension);
+        }
+        self.code.extend([0x0F, code]);
+        self.address(x & 7, place);
+    }
+
+    /// Emits the low bits of a register number, and a place.
+    fn address(&mut self, low: u8, place: Place) {
         let (base, number) = match place {
             Place::Xmm(y) => {
-                let extension = high << 2 | y >> 3;
-                if extension != 0 {
-                    self.code.push(0x40 | extension);
-                }
-                self.code.extend([0x0F, code, 0xC0 | low << 3 | (y & 7)]);
+                self.code.push(0xC0 | low << 3 | (y & 7));
                 return;
             }
             Place::Slot(k) if self.calls => (RBX, k),
@@ -205,10 +228,6 @@ impl Assembler {
             Place::Output(k) if self.calls => (RBP, k),
             Place::Output(k) => (RDX, k),
         };
-        if high != 0 {
-            self.code.push(0x44);
-        }
-        self.code.extend([0x0F, code]);
         let distance = 8 * number;
         if distance < 128 {
             self.code.extend([0x40 | low << 3 | base, distance as u8]);

@@ -59,8 +59,12 @@ struct Mapping(Mmap);
 
 impl Native {
     /// Translates steps; `None` where the system gives no memory that can be executed.
-    #[allow(unsafe_code)]
     pub(super) fn of(steps: &Steps, core: &Arc<Core>) -> Option<Self> {
+        Self::with(steps, core, is_x86_feature_detected!("avx"))
+    }
+
+    #[allow(unsafe_code)]
+    fn with(steps: &Steps, core: &Arc<Core>, has_avx: bool) -> Option<Self> {
         if core.outputs.is_empty()
             || steps.n_slots().max(core.n_inputs) >= MOST_NUMBERS
             || !steps.are_sound(core)
@@ -77,7 +81,7 @@ impl Native {
             argument: std::ptr::from_ref(step).expose_provenance(),
         });
         let calls: HashMap<u32, Call> = numbers.into_iter().zip(addresses).collect();
-        let code = Mapping::of(&translate::translate(steps, core, &calls))?;
+        let code = Mapping::of(&translate::translate(steps, core, &calls, has_avx))?;
         // SAFETY: the translation is a function of this kind, and `code` keeps it where it is
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(code.0.as_ptr()) };
         Some(Self {

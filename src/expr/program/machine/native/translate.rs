@@ -45,6 +45,8 @@ pub(super) struct Translation<'a> {
     pinned: u16,
     /// by step: what leads there
     pub(super) landings: HashMap<u32, Landing>,
+    /// whether the processor has AVX
+    has_avx: bool,
     /// whether one gets here by going on
     pub(super) is_reached: bool,
     /// by step: what is called for it
@@ -95,8 +97,14 @@ fn instruction(op: BinaryOp) -> Option<Instruction> {
     }
 }
 
-/// Returns the code of these steps; `calls` are the steps that are called, by number.
-pub(super) fn translate(steps: &Steps, core: &Core, calls: &HashMap<u32, Call>) -> Vec<u8> {
+/// Returns the code of these steps, with AVX or without; `calls` are the steps that are called, by
+/// number.
+pub(super) fn translate(
+    steps: &Steps,
+    core: &Core,
+    calls: &HashMap<u32, Call>,
+    has_avx: bool,
+) -> Vec<u8> {
     let is_target = steps.jumped_to();
     let (needs, last_read) = needs(steps, core, &is_target);
     let mut translation = Translation {
@@ -107,6 +115,7 @@ pub(super) fn translate(steps: &Steps, core: &Core, calls: &HashMap<u32, Call>) 
         last_read,
         pinned: 0,
         landings: HashMap::default(),
+        has_avx,
         is_reached: true,
         calls,
     };
@@ -179,6 +188,9 @@ impl Translation<'_> {
                 }
             },
             Step::Binary { op, a, b, to } => match instruction(op) {
+                Some(instruction) if self.has_avx => {
+                    self.arithmetic_by_avx(op, instruction, [a, b], to, next);
+                }
                 Some(instruction) => self.arithmetic(op, instruction, [a, b], to, next),
                 None if op == BinaryOp::Along => self.along(a, b, to, next),
                 None if op == BinaryOp::Kept => self.kept(a, b, to, next),
@@ -295,6 +307,39 @@ impl Translation<'_> {
         let x = self.own(a, next_of_a);
         self.assembler.operate(instruction, x, second);
         self.used_once(b, next_of_b);
+        self.hold(x, to, next.results[0]);
+    }
+
+    fn arithmetic_by_avx(
+        &mut self,
+        op: BinaryOp,
+        instruction: Instruction,
+        [mut a, mut b]: [u32; 2],
+        to: u32,
+        next: &Next,
+    ) {
+        let [mut next_of_a, mut next_of_b, ..] = next.operands;
+        // the first operand is in a register
+        let is_symmetric = matches!(op, BinaryOp::Add | BinaryOp::Mul);
+        if is_symmetric && self.register(a) == NOWHERE {
+            (a, b) = (b, a);
+            (next_of_a, next_of_b) = (next_of_b, next_of_a);
+        }
+        let second = self.place(b);
+        let first = self.readable(a, ONE);
+        // the result may take the place of an operand
+        self.used_once(a, next_of_a);
+        self.used_once(b, next_of_b);
+        self.pinned = 0;
+        for place in [Place::Xmm(first), second] {
+            if let Place::Xmm(x) = place
+                && self.held.get(usize::from(x)).is_some_and(Option::is_some)
+            {
+                self.pinned |= 1 << x;
+            }
+        }
+        let x = self.take();
+        self.assembler.operate_on(instruction, x, first, second);
         self.hold(x, to, next.results[0]);
     }
 
