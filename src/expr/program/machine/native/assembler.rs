@@ -124,6 +124,22 @@ impl Assembler {
         self.address(x & 7, place);
     }
 
+    /// Sets all bits of `x` where `a` stands so to `place`, else none; by AVX.
+    pub(super) fn mask_on(&mut self, x: Xmm, relation: Relation, a: Xmm, place: Place) {
+        self.operate_on(MASK, x, a, place);
+        self.code.push(relation as u8);
+    }
+
+    /// Emits `x ← yes` where the bits of the mask are set, `no` elsewhere; by AVX.
+    pub(super) fn blend(&mut self, x: Xmm, mask: Xmm, yes: Xmm, no: Xmm) {
+        // the bits of register numbers stand inverted; 3 is the table of codes, 1 the prefix 66
+        let high = (x >> 3 ^ 1) << 7 | 1 << 6 | (yes >> 3 ^ 1) << 5;
+        let rest = (!no & 15) << 3 | 1;
+        self.code.extend([0xC4, high | 3, rest, 0x4B]);
+        self.address(x & 7, Place::Xmm(yes));
+        self.code.push(mask << 4);
+    }
+
     /// Emits `x ← y`, all of it.
     pub(super) fn copy(&mut self, x: Xmm, y: Xmm) {
         self.operands(0x28, x, Place::Xmm(y));

@@ -3,17 +3,12 @@
 //! The first jump to a step leaves values where they are; that is how the step finds them. Whoever
 //! leads there later, by a jump or by going on, brings values to the same places.
 
-use super::assembler::{Jump, Place, When, Xmm};
+use super::assembler::{Place, When, Xmm};
+use super::held::{Held, Holding, Landing, N_HOLDING, ONE};
 use super::needs::FAR;
-use super::translate::{Held, N_HOLDING, ONE, Translation};
+use super::translate::Translation;
 
-/// How a step that is jumped to finds values, and the jumps to it so far.
-pub(super) struct Landing {
-    jumps: Vec<Jump>,
-    held: [Option<Held>; N_HOLDING],
-}
-
-/// What brings values to where a step finds them.
+/// Instructions that bring values to where a step finds them.
 struct Way {
     /// registers whose values are stored, first
     stores: Vec<Xmm>,
@@ -91,7 +86,7 @@ impl Translation<'_> {
     }
 
     /// Returns what brings values to where a step finds them.
-    fn way_to(&mut self, target: u32, landing: &[Option<Held>; N_HOLDING]) -> Way {
+    fn way_to(&mut self, target: u32, landing: &Holding) -> Way {
         let mut moves = Vec::new();
         let mut is_expected = [false; N_HOLDING];
         for (to, place) in (0..).zip(landing) {

@@ -14,6 +14,7 @@
 mod assembler;
 mod calls;
 mod columns;
+mod held;
 mod joins;
 mod needs;
 mod translate;

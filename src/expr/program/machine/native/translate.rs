@@ -2,7 +2,7 @@
 //! stored when they must be.
 //!
 //! A result is stored before its register is given away, before a call and at the end, and only if
-//! it is still needed; jumps leave it where it is ([`joins`](super::joins)). The register that is
+//! it is still needed; jumps leave it where it is (`joins.rs`). The register that is
 //! given away is the one whose value is needed last. Constants, inputs that were stored and other
 //! numbers in the frame are operands where they stand. Outputs have their places outside.
 
@@ -11,30 +11,16 @@ use super::super::super::operation::{BinaryOp, Comparison, UnaryOp};
 use super::super::steps::{Step, Steps};
 use super::assembler::{self, Assembler, Instruction, Place, Relation, When, Xmm};
 use super::calls;
-use super::joins::Landing;
+use super::held::{Held, Holding, Landing, N_HOLDING, ONE, OTHER};
 use super::needs::{NEVER, Next, needs};
 use crate::expr::program::hashing::HashMap;
 
-/// Registers that hold values of slots; the two behind them are for what lies between two
-/// instructions.
-pub(super) const N_HOLDING: usize = 14;
-pub(super) const ONE: Xmm = 14;
-const OTHER: Xmm = 15;
-
 /// In no register.
-pub(super) const NOWHERE: u8 = u8::MAX;
-
-/// A value in a register, and nowhere else.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Held {
-    pub(super) slot: u32,
-    /// when it is needed again
-    pub(super) next: u32,
-}
+const NOWHERE: u8 = u8::MAX;
 
 pub(super) struct Translation<'a> {
     pub(super) assembler: Assembler,
-    pub(super) held: [Option<Held>; N_HOLDING],
+    pub(super) held: Holding,
     /// by slot: the register
     pub(super) places: Vec<u8>,
     /// by slot: where it stands in memory
@@ -398,14 +384,21 @@ impl Translation<'_> {
         };
         let [a_at, b_at, yes_at, no_at] = [a, b, yes, no].map(|slot| self.place(slot));
         let x = self.take();
-        self.assembler.load(OTHER, a_at);
-        self.assembler.mask(OTHER, relation, b_at);
-        self.assembler.load(ONE, yes_at);
-        self.bits(assembler::AND, ONE, OTHER);
-        self.assembler.load(x, no_at);
-        self.bits(assembler::AND_NOT, OTHER, x);
-        self.bits(assembler::OR, OTHER, ONE);
-        self.assembler.copy(x, OTHER);
+        if self.has_avx {
+            let first = self.readable(a, ONE);
+            self.assembler.mask_on(OTHER, relation, first, b_at);
+            let [yes, no] = [self.readable(yes, ONE), self.readable(no, x)];
+            self.assembler.blend(x, OTHER, yes, no);
+        } else {
+            self.assembler.load(OTHER, a_at);
+            self.assembler.mask(OTHER, relation, b_at);
+            self.assembler.load(ONE, yes_at);
+            self.bits(assembler::AND, ONE, OTHER);
+            self.assembler.load(x, no_at);
+            self.bits(assembler::AND_NOT, OTHER, x);
+            self.bits(assembler::OR, OTHER, ONE);
+            self.assembler.copy(x, OTHER);
+        }
         self.used([a, b, yes, no], next);
         self.hold(x, to, next.results[0]);
     }
