@@ -28,6 +28,7 @@ pub use interval::Interval;
 pub use jet::Jet;
 pub use lanes::Lanes;
 pub use power::Exponent;
+pub(crate) use power::general as general_power;
 
 use elementary::one;
 use std::fmt::Debug;

@@ -62,9 +62,10 @@ pub(super) fn whole(x: f64, n: i32) -> f64 {
     if n < 0 { 1.0 / product } else { product }
 }
 
-/// Returns `x` to any power, by its logarithm.
-#[inline]
-pub(super) fn general(x: f64, exponent: f64) -> f64 {
+/// Returns `x` to any power, by its logarithm: part of the code that calls it, and so compiled for
+/// the same instructions.
+#[inline(always)]
+pub(crate) fn general(x: f64, exponent: f64) -> f64 {
     one::<Power>([x, exponent])
 }
 

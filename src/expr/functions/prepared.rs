@@ -8,7 +8,7 @@ use super::Function;
 use super::contact;
 use super::series;
 use super::step::{cubic, haversine, quintic};
-use crate::scalar::{Dual, Exponent, Lanes, Scalar};
+use crate::scalar::{Dual, Exponent, Lanes, Scalar, general_power};
 
 /// A prepared function; each variant lists its variables, then its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -202,7 +202,7 @@ impl Power for f64 {
         match exponent {
             Exponent::Whole(n) => Scalar::powi(self, n),
             Exponent::Half(n) => Scalar::powi(self, n) * self.sqrt(),
-            Exponent::Other => Scalar::powf(self, e),
+            Exponent::Other => general_power(self, e),
         }
     }
 }

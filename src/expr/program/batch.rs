@@ -7,8 +7,8 @@
 //! of vector instructions; which one runs is decided when the batch is made. The result of each
 //! point is that of [`Program::run`], to the bit.
 
-use super::code::{Code, Instruction, gathered, partial};
-use super::machine::Columns;
+use super::code::{Code, Core, Instruction, gathered, partial};
+use super::machine::{Columns, written_out};
 use super::operation::{BinaryOp, Comparison, UnaryOp, from_mask};
 use super::run::Program;
 use crate::diagnostic::{Cause, Diagnostic, Error};
@@ -48,6 +48,8 @@ pub(super) struct Block([Vector; VECTORS]);
 #[derive(Clone, Debug)]
 pub struct Batch {
     program: Program,
+    /// its code, with short functions written out where loops take them
+    core: Arc<Core>,
     /// all of the program as one loop over the columns themselves
     whole: Option<Arc<Columns>>,
     /// what the loops need beside the columns
@@ -123,93 +125,96 @@ fn arithmetic(code: Code) -> Option<Arithmetic> {
 impl Program {
     /// Makes a batch, which runs over many points at once.
     pub fn batch(&self) -> Batch {
-        let core = self.core();
+        let written = match Columns::are_to_be_had() {
+            true => written_out(self.core()).map(Arc::new),
+            false => None,
+        };
+        let core = written.unwrap_or_else(|| self.shared_core());
         let nothing = Block([Vector::constant(f64::NAN); VECTORS]);
         let mut registers = vec![nothing; core.size as usize];
         for (register, &c) in registers.iter_mut().zip(&core.constants) {
             *register = Block([Vector::constant(c); VECTORS]);
         }
         let whole = match core.code.iter().all(Columns::can) {
-            true => Columns::of(core, &core.code, &core.outputs).map(Arc::new),
+            true => Columns::of(&core, &core.code, &core.outputs).map(Arc::new),
             false => None,
         };
         let steps = match whole {
             Some(_) => fused(core.code.iter().map(|i| Step::Plain(*i)).collect()),
-            None => self.batch_steps(),
+            None => batch_steps(&core),
         };
         Batch {
             program: self.clone(),
             whole,
-            frame: Columns::frame(core),
+            frame: Columns::frame(&core),
+            core,
             registers,
             steps,
             instructions: Instructions::of_this_machine(),
         }
     }
+}
 
-    /// Returns the steps, where plain arithmetic that follows each other is a loop of its own.
-    fn batch_steps(&self) -> Vec<Step> {
-        let core = self.core();
-        let pieces: Vec<&[Instruction]> = core
-            .code
-            .chunk_by(|a, b| Columns::can(a) && Columns::can(b))
-            .flat_map(|piece| piece.chunks(MOST_IN_LOOP))
-            .collect();
-        // from the end, where it is known which registers are read behind a piece
-        let mut is_needed = vec![false; core.size as usize];
-        core.outputs
+/// Returns the steps, where plain arithmetic that follows each other is a loop of its own.
+fn batch_steps(core: &Core) -> Vec<Step> {
+    let pieces: Vec<&[Instruction]> = core
+        .code
+        .chunk_by(|a, b| Columns::can(a) && Columns::can(b))
+        .flat_map(|piece| piece.chunks(MOST_IN_LOOP))
+        .collect();
+    // from the end, where it is known which registers are read behind a piece
+    let mut is_needed = vec![false; core.size as usize];
+    core.outputs
+        .iter()
+        .for_each(|&r| is_needed[r as usize] = true);
+    let mut loops: Vec<Option<Columns>> = Vec::with_capacity(pieces.len());
+    for piece in pieces.iter().rev() {
+        let mut wanted: Vec<u32> = piece.iter().map(|i| i.to).collect();
+        wanted.sort_unstable();
+        wanted.dedup();
+        wanted.retain(|&r| is_needed[r as usize]);
+        loops.push(match piece.len() {
+            1 => None,
+            _ => Columns::of(core, piece, &wanted),
+        });
+        for instruction in piece.iter().rev() {
+            is_needed[instruction.to as usize] = false;
+            core.operands(instruction, |r| is_needed[r as usize] = true);
+        }
+    }
+    let mut steps = Vec::with_capacity(pieces.len());
+    for (piece, columns) in pieces.iter().zip(loops.into_iter().rev()) {
+        match columns {
+            Some(columns) => steps.push(Step::Columns(Arc::new(columns))),
+            None => steps.extend(fused(piece.iter().map(|i| batch_step(core, i)).collect())),
+        }
+    }
+    steps
+}
+
+fn batch_step(core: &Core, instruction: &Instruction) -> Step {
+    if let Code::Call(function, count) = instruction.code {
+        let list = core.arguments(instruction.a, count);
+        let known: Vec<Option<f64>> = list
             .iter()
-            .for_each(|&r| is_needed[r as usize] = true);
-        let mut loops: Vec<Option<Columns>> = Vec::with_capacity(pieces.len());
-        for piece in pieces.iter().rev() {
-            let mut wanted: Vec<u32> = piece.iter().map(|i| i.to).collect();
-            wanted.sort_unstable();
-            wanted.dedup();
-            wanted.retain(|&r| is_needed[r as usize]);
-            loops.push(match piece.len() {
-                1 => None,
-                _ => Columns::of(core, piece, &wanted),
-            });
-            for instruction in piece.iter().rev() {
-                is_needed[instruction.to as usize] = false;
-                core.operands(instruction, |r| is_needed[r as usize] = true);
-            }
+            .map(|&r| core.constants.get(r as usize).copied())
+            .collect();
+        if let Some((what, parameters)) = Prepared::of(function, &known) {
+            let b = if what.n_variables() == 2 {
+                list[1]
+            } else {
+                list[0]
+            };
+            return Step::Prepared {
+                what,
+                parameters,
+                a: list[0],
+                b,
+                to: instruction.to,
+            };
         }
-        let mut steps = Vec::with_capacity(pieces.len());
-        for (piece, columns) in pieces.iter().zip(loops.into_iter().rev()) {
-            match columns {
-                Some(columns) => steps.push(Step::Columns(Arc::new(columns))),
-                None => steps.extend(fused(piece.iter().map(|i| self.batch_step(i)).collect())),
-            }
-        }
-        steps
     }
-
-    fn batch_step(&self, instruction: &Instruction) -> Step {
-        let core = self.core();
-        if let Code::Call(function, count) = instruction.code {
-            let list = core.arguments(instruction.a, count);
-            let known: Vec<Option<f64>> = list
-                .iter()
-                .map(|&r| core.constants.get(r as usize).copied())
-                .collect();
-            if let Some((what, parameters)) = Prepared::of(function, &known) {
-                let b = if what.n_variables() == 2 {
-                    list[1]
-                } else {
-                    list[0]
-                };
-                return Step::Prepared {
-                    what,
-                    parameters,
-                    a: list[0],
-                    b,
-                    to: instruction.to,
-                };
-            }
-        }
-        Step::Plain(*instruction)
-    }
+    Step::Plain(*instruction)
 }
 
 /// Most instructions of a loop over blocks; with few of them it has few columns.
@@ -257,17 +262,17 @@ impl Batch {
     pub fn run(&mut self, inputs: &[&[f64]], outputs: &mut [&mut [f64]]) -> Result<(), Error> {
         let n = outputs.iter().map(|out| out.len()).max().unwrap_or(0);
         self.program.check_counts(inputs.len(), outputs.len())?;
-        let mut used = self.program.core().used.iter().map(|&k| k as usize);
+        let mut used = self.core.used.iter().map(|&k| k as usize);
         if let Some(k) = used.find(|&k| inputs[k].len() < n) {
             let (input, had) = (self.program.inputs()[k], inputs[k].len());
             let what = format!("the column of {input} has {had} values for {n} points");
             return Err(Diagnostic::error(Cause::MissingValue, what).into());
         }
         if let Some(whole) = &self.whole
-            && outputs.len() == self.program.core().outputs.len()
+            && outputs.len() == self.core.outputs.len()
             && outputs.iter().all(|out| out.len() == n)
         {
-            let core = self.program.core();
+            let core = &self.core;
             let column = |&r: &u32| inputs[core.used[r as usize - core.constants.len()] as usize];
             let read = whole.inputs().iter().map(column);
             whole.over_columns(&mut self.frame, read, outputs);
@@ -283,12 +288,9 @@ impl Batch {
 
     /// Copies the inputs of a block into their registers.
     fn enter(&mut self, inputs: &[&[f64]], start: usize, n: usize) {
-        let first = self.program.core().constants.len();
+        let first = self.core.constants.len();
         let end = n.min(start + BLOCK);
-        for (register, &k) in self.registers[first..]
-            .iter_mut()
-            .zip(&self.program.core().used)
-        {
+        for (register, &k) in self.registers[first..].iter_mut().zip(&self.core.used) {
             let column = &inputs[k as usize][start..end];
             let (vectors, rest) = column.as_chunks::<WIDTH>();
             for (to, from) in register.0.iter_mut().zip(vectors) {
@@ -302,7 +304,7 @@ impl Batch {
 
     /// Copies the results of a block out.
     fn leave(&self, outputs: &mut [&mut [f64]], start: usize) {
-        for (out, &r) in outputs.iter_mut().zip(&self.program.core().outputs) {
+        for (out, &r) in outputs.iter_mut().zip(&self.core.outputs) {
             let end = out.len().min(start + BLOCK);
             let Some(column) = out.get_mut(start..end) else {
                 continue;
@@ -358,7 +360,7 @@ impl Batch {
         let r = &mut self.registers[..];
         for step in &self.steps {
             match step {
-                Step::Plain(instruction) => plain(&self.program, instruction, r),
+                Step::Plain(instruction) => plain(&self.core, instruction, r),
                 Step::Columns(columns) => columns.over_blocks(&mut self.frame, r),
                 Step::Two(p, q, registers) => two(*p, *q, *registers, r),
                 Step::Prepared {
@@ -418,7 +420,7 @@ fn two(p: Arithmetic, q: Arithmetic, [a, b, c, to]: [u32; 4], r: &mut [Block]) {
 }
 
 #[inline(always)]
-fn plain(program: &Program, instruction: &Instruction, r: &mut [Block]) {
+fn plain(core: &Core, instruction: &Instruction, r: &mut [Block]) {
     let Instruction {
         code,
         to,
@@ -427,7 +429,6 @@ fn plain(program: &Program, instruction: &Instruction, r: &mut [Block]) {
         c,
         d,
     } = *instruction;
-    let core = program.core();
     match code {
         Code::Binary(BinaryOp::Add) => each!(r, to = |x = a, y = b| x + y),
         Code::Binary(BinaryOp::Sub) => each!(r, to = |x = a, y = b| x - y),
@@ -551,6 +552,78 @@ mod tests {
                 program.run(&[columns[0][k], columns[1][k]], &mut work, &mut single);
                 for (column, want) in out.iter().zip(single) {
                     assert_eq!(column[k].to_bits(), want.to_bits(), "point {k} of {n}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn functions_that_are_written_out_for_loops_are_single_runs() {
+        let mut b = Builder::new(Folding::Strict);
+        let (x, y) = (b.input(Input::Slot(0)), b.input(Input::Slot(1)));
+        let parameters = [0.2, -0.3, 0.9, 3.0, 1.5].map(|c| b.constant(c));
+        let [x0, h0, x1, h1, _] = parameters;
+        // the same function twice, of one that is computed, and one whose rise is one
+        let product = b.binary(BinaryOp::Mul, x, y);
+        let one = b.constant(1.0);
+        let mut outputs = Vec::new();
+        for x in [x, product] {
+            for (function, parameters) in [
+                (Function::Step, vec![x0, h0, x1, h1]),
+                (Function::Step5, vec![x0, h0, x1, h1]),
+                (Function::Step, vec![h0, one, one, h1]),
+                (Function::Havsin, vec![x0, h0, x1, h1]),
+                (Function::Poly, parameters.to_vec()),
+                (Function::Poly, parameters[..2].to_vec()),
+                (Function::Cheby, parameters.to_vec()),
+            ] {
+                let call = b.call(function, &[vec![x], parameters].concat());
+                outputs.push(call);
+                outputs.extend(b.gradient(call, &[x]));
+            }
+        }
+        // one by one, so that all of a program is a loop, and all together
+        let mut programs: Vec<Program> = outputs.iter().map(|&v| b.finish(&[v])).collect();
+        programs.push(b.finish(&outputs));
+        let n = 131;
+        let mut points: Vec<[f64; 2]> = (0..n)
+            .map(|k| {
+                [
+                    f64::from(k * 37 % 101) / 50.0 - 1.0,
+                    f64::from(k * 11 % 19) / 8.0 - 1.0,
+                ]
+            })
+            .collect();
+        points.extend([
+            [0.2, 1.0],
+            [0.9, 1.0],
+            [-0.3, 1.0],
+            [f64::NAN, 1.0],
+            [f64::INFINITY, 1.0],
+        ]);
+        for program in programs {
+            let columns: Vec<Vec<f64>> = (program.inputs().iter())
+                .map(|input| {
+                    let k = usize::from(*input == Input::Slot(1));
+                    points.iter().map(|p| p[k]).collect()
+                })
+                .collect();
+            let views: Vec<&[f64]> = columns.iter().map(|c| &c[..]).collect();
+            let mut out = vec![vec![0.0; points.len()]; program.n_outputs()];
+            let mut outputs: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
+            program.batch().run(&views, &mut outputs).unwrap();
+            let (mut work, mut single) = (Work::default(), vec![0.0; program.n_outputs()]);
+            for k in 0..points.len() {
+                let inputs: Vec<f64> = columns.iter().map(|c| c[k]).collect();
+                program.run(&inputs, &mut work, &mut single);
+                for (column, want) in out.iter().zip(&single) {
+                    let is_same = column[k].to_bits() == want.to_bits();
+                    let are_none = column[k].is_nan() && want.is_nan();
+                    assert!(
+                        is_same || are_none,
+                        "{inputs:?}: {}, not {want}: {program}",
+                        column[k]
+                    );
                 }
             }
         }

@@ -69,6 +69,11 @@ impl Program {
         self.machine.core()
     }
 
+    /// Returns the code, to be kept.
+    pub(super) fn shared_core(&self) -> Arc<Core> {
+        Arc::clone(self.machine.core())
+    }
+
     /// Returns the same program, run over plain numbers by one engine from the first run on;
     /// `None` where that engine is not to be had. For comparing the two: by itself a program
     /// changes to the faster when that pays.
@@ -137,15 +142,12 @@ impl Program {
     /// which the program is translated.
     #[inline]
     pub fn run(&self, inputs: &[f64], work: &mut Work, out: &mut [f64]) {
-        let outputs = &self.core().outputs;
-        if self.run_at_once(inputs, work).is_none() {
-            self.enter_and_run(inputs, work);
-        }
-        for (out, &r) in out.iter_mut().zip(outputs) {
-            *out = work.registers[r as usize];
-        }
-        if out.len() > outputs.len() {
-            out[outputs.len()..].fill(f64::NAN);
+        let done = match work.owner == self.id + FOR_THE_MACHINE {
+            true => self.machine.run_native(&mut work.registers, inputs, out),
+            false => None,
+        };
+        if done.is_none() {
+            self.enter_and_run(inputs, work, out);
         }
     }
 
@@ -159,21 +161,18 @@ impl Program {
         work: &mut Work,
         out: &mut [f64],
     ) -> (f64, bool) {
-        let outputs = &self.core().outputs;
         if self.run_at_once(inputs, work).is_none() {
-            self.enter_and_run(inputs, work);
+            self.enter(inputs, work);
         }
-        let registers = &work.registers[..];
+        let results = self.results(work);
         // number by number: what was just written is not read as a whole. A sum is finite only if
         // all its terms are
         let mut sum = 0.0;
-        for (out, &r) in out.iter_mut().zip(outputs) {
-            let x = registers[r as usize];
+        for (out, &x) in out.iter_mut().zip(results) {
             *out = x;
             sum += x * 0.0;
         }
-        let behind = outputs.get(out.len());
-        let behind = behind.map_or(f64::NAN, |&r| registers[r as usize]);
+        let behind = results.get(out.len()).copied().unwrap_or(f64::NAN);
         (behind, sum == 0.0)
     }
 
@@ -221,19 +220,26 @@ impl Program {
     }
 
     /// Runs as code of the processor, and returns the first output; `None` where anything has to
-    /// be done or said before that.
+    /// be done or said before that. All outputs are [`Program::results`].
     #[inline(always)]
     fn run_at_once(&self, inputs: &[f64], work: &mut Work) -> Option<f64> {
         if work.owner != self.id + FOR_THE_MACHINE {
             return None;
         }
-        self.machine.run_native(&mut work.registers, inputs)
+        self.machine.run_native_inside(&mut work.registers, inputs)
+    }
+
+    /// Returns the outputs, after a run that left them at the end of the frame.
+    #[inline(always)]
+    fn results<'w>(&self, work: &'w Work) -> &'w [f64] {
+        let behind = work.registers.len().saturating_sub(self.n_outputs());
+        &work.registers[behind..]
     }
 
     /// Checks the inputs, lays out the frame of the machine unless it is that of this program, and
     /// runs.
     #[inline(never)]
-    fn enter_and_run(&self, inputs: &[f64], work: &mut Work) {
+    fn enter(&self, inputs: &[f64], work: &mut Work) {
         let padded;
         let inputs = if inputs.len() < self.inputs.len() {
             padded = self.padded(inputs, f64::NAN);
@@ -250,10 +256,18 @@ impl Program {
     }
 
     #[inline(never)]
+    fn enter_and_run(&self, inputs: &[f64], work: &mut Work, out: &mut [f64]) {
+        self.enter(inputs, work);
+        let results = self.results(work);
+        let n = out.len().min(results.len());
+        out[..n].copy_from_slice(&results[..n]);
+        out[n..].fill(f64::NAN);
+    }
+
+    #[inline(never)]
     fn enter_and_value(&self, inputs: &[f64], work: &mut Work) -> f64 {
-        self.enter_and_run(inputs, work);
-        let first = self.core().outputs.first();
-        first.map_or(f64::NAN, |&r| work.registers[r as usize])
+        self.enter(inputs, work);
+        self.results(work).first().copied().unwrap_or(f64::NAN)
     }
 
     /// Runs over any number, unchecked as [`Program::run`].

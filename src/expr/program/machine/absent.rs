@@ -13,7 +13,10 @@ impl Native {
     pub(super) fn of(_: &Steps, _: &Arc<Core>) -> Option<Self> {
         None
     }
-    pub(super) fn run(&self, _: &mut [f64], _: &[f64]) -> Option<f64> {
+    pub(super) fn run(&self, _: &mut [f64], _: &[f64], _: &mut [f64]) -> Option<f64> {
+        match *self {}
+    }
+    pub(super) fn run_inside(&self, _: &mut [f64], _: &[f64]) -> Option<f64> {
         match *self {}
     }
 }
@@ -23,6 +26,9 @@ impl Native {
 pub(in crate::expr::program) enum Columns {}
 
 impl Columns {
+    pub(in crate::expr::program) fn are_to_be_had() -> bool {
+        false
+    }
     pub(in crate::expr::program) fn can(_: &Instruction) -> bool {
         false
     }

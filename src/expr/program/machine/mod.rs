@@ -33,6 +33,7 @@ mod steps;
 
 use super::code::Core;
 use crate::clock::Moment;
+pub(super) use lower::written_out;
 pub(super) use native::Columns;
 use native::Native;
 use std::cell::Cell;
@@ -120,7 +121,7 @@ impl Machine {
         Self { core, made }
     }
 
-    pub(super) fn core(&self) -> &Core {
+    pub(super) fn core(&self) -> &Arc<Core> {
         &self.core
     }
 
@@ -147,12 +148,14 @@ impl Machine {
         self.steps().steps.len()
     }
 
-    /// Returns the numbers that stand in a frame behind the registers of the straight code.
+    /// Returns the numbers that stand in a frame behind the registers of the straight code: those
+    /// of the steps, and room for the outputs.
     pub(super) fn extras(&self) -> impl Iterator<Item = f64> {
-        self.steps().extras.iter().map(|extra| match *extra {
+        let extras = self.steps().extras.iter().map(|extra| match *extra {
             Extra::Constant(c) => c,
             Extra::Between | Extra::Ahead => f64::NAN,
-        })
+        });
+        extras.chain(self.core.outputs.iter().map(|_| f64::NAN))
     }
 
     fn steps(&self) -> &Steps {
@@ -179,16 +182,33 @@ impl Machine {
     }
 
     /// Runs as code of the processor, over a frame whose constants are in place; returns the first
-    /// output, or `None` where there is no such code, or frame or inputs are too short.
+    /// output, or `None` where there is no such code, frame or inputs are too short, or there are
+    /// not as many places as outputs.
     #[inline(always)]
-    pub(super) fn run_native(&self, frame: &mut [f64], inputs: &[f64]) -> Option<f64> {
-        self.made.native.get()?.run(frame, inputs)
+    pub(super) fn run_native(
+        &self,
+        frame: &mut [f64],
+        inputs: &[f64],
+        out: &mut [f64],
+    ) -> Option<f64> {
+        self.made.native.get()?.run(frame, inputs, out)
     }
 
-    /// Goes through the steps; translates them for the next run when that pays.
+    /// Does as [`Machine::run_native`], the outputs at the end of the frame.
+    #[inline(always)]
+    pub(super) fn run_native_inside(&self, frame: &mut [f64], inputs: &[f64]) -> Option<f64> {
+        self.made.native.get()?.run_inside(frame, inputs)
+    }
+
+    /// Goes through the steps, and copies the outputs to the end of the frame; translates the steps
+    /// for the next run when that pays.
     pub(super) fn interpret(&self, frame: &mut [f64], inputs: &[f64]) {
         let steps = self.steps();
         steps.run(&self.core, frame, inputs);
+        let (slots, outputs) = frame.split_at_mut(steps.n_slots());
+        for (out, &slot) in outputs.iter_mut().zip(&self.core.outputs) {
+            *out = slots[slot as usize];
+        }
         if !self.made.is_decided.load(Ordering::Relaxed) {
             let n_runs = self.made.n_runs.fetch_add(1, Ordering::Relaxed) as usize;
             if n_runs >= runs_per_translation(steps) {

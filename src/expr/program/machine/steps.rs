@@ -208,6 +208,37 @@ impl Steps {
         self.n_registers as usize + self.extras.len()
     }
 
+    /// Calls `each` with the slots that a step reads or writes of which it does not say so itself:
+    /// what is called for it works on the frame.
+    pub(super) fn slots_of_called(&self, step: &Step, core: &Core, mut each: impl FnMut(u32)) {
+        match *step {
+            Step::Instruction { number } => {
+                let instruction = &core.code[number as usize];
+                each(instruction.to);
+                core.operands(instruction, each);
+            }
+            Step::Prepared { number } => {
+                let call = &self.prepared[number as usize];
+                let results = call.slopes.iter().chain([&call.value]).flatten();
+                call.variables.iter().chain(results).for_each(|&s| each(s));
+            }
+            Step::Circle { number } => {
+                let circle = &self.circles[number as usize];
+                let results = circle.results().as_flattened();
+                circle.angles().iter().chain(results).for_each(|&s| each(s));
+            }
+            Step::Input { .. }
+            | Step::Copy { .. }
+            | Step::Unary { .. }
+            | Step::Binary { .. }
+            | Step::SineCosine { .. }
+            | Step::Select { .. }
+            | Step::Unless { .. }
+            | Step::Branch { .. }
+            | Step::Go { .. } => {}
+        }
+    }
+
     /// Returns which steps are jumped to; the last element stands for the end.
     pub(super) fn jumped_to(&self) -> Vec<bool> {
         let mut is_target = vec![false; self.steps.len() + 1];
@@ -224,35 +255,18 @@ impl Steps {
     pub(super) fn are_sound(&self, core: &Core) -> bool {
         let (n_slots, end) = (self.n_slots(), self.steps.len());
         let is_slot = |slot: &u32| (*slot as usize) < n_slots;
-        let is_register = |register: u32| register < core.size;
         let is_sound = |(k, step): (usize, &Step)| {
             let (operands, n) = step.operands();
             let (results, m) = step.results();
             let mut sound = operands[..n].iter().chain(&results[..m]).all(is_slot)
                 && step.targets().all(|t| k < t as usize && t as usize <= end);
-            match *step {
-                Step::Input { number, .. } => sound &= core.used.get(k) == Some(&number),
-                Step::Instruction { number } => match core.code.get(number as usize) {
-                    Some(instruction) => {
-                        sound &= is_register(instruction.to);
-                        core.operands(instruction, |register| sound &= is_register(register));
-                    }
-                    None => sound = false,
-                },
-                Step::Prepared { number } => match self.prepared.get(number as usize) {
-                    Some(call) => {
-                        let results = call.slopes.iter().chain([&call.value]).flatten();
-                        sound &= call.variables.iter().chain(results).all(is_slot);
-                    }
-                    None => sound = false,
-                },
-                Step::Circle { number } => match self.circles.get(number as usize) {
-                    Some(circle) => {
-                        let results = circle.results().as_flattened();
-                        sound &= circle.angles().iter().chain(results).all(is_slot);
-                    }
-                    None => sound = false,
-                },
+            let (is_there, n_slots) = match *step {
+                Step::Input { number, .. } => (core.used.get(k) == Some(&number), n_slots),
+                Step::Instruction { number } => {
+                    ((number as usize) < core.code.len(), core.size as usize)
+                }
+                Step::Prepared { number } => ((number as usize) < self.prepared.len(), n_slots),
+                Step::Circle { number } => ((number as usize) < self.circles.len(), n_slots),
                 Step::Copy { .. }
                 | Step::Unary { .. }
                 | Step::Binary { .. }
@@ -260,7 +274,11 @@ impl Steps {
                 | Step::Select { .. }
                 | Step::Unless { .. }
                 | Step::Branch { .. }
-                | Step::Go { .. } => {}
+                | Step::Go { .. } => (true, n_slots),
+            };
+            sound &= is_there;
+            if is_there {
+                self.slots_of_called(step, core, |slot| sound &= (slot as usize) < n_slots);
             }
             sound
         };

@@ -281,8 +281,10 @@ mod tests {
             assert_eq!(bits(&own), bits(&frame), "{gathered:?}");
             if let Some(native) = Native::of(&gathered, &core) {
                 let mut own = start;
-                native.run(&mut own, &inputs).unwrap();
-                assert_eq!(bits(&own), bits(&frame), "{gathered:?}");
+                // steps read what none has written: zero, in the frame and where outputs stand
+                let mut out = [0.0; N_SLOTS as usize];
+                native.run(&mut own, &inputs, &mut out).unwrap();
+                assert_eq!(bits(&out), bits(&frame), "{gathered:?}");
             }
         }
         assert!(n_gathered > 100, "{n_gathered}");

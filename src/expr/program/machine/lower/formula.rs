@@ -33,6 +33,16 @@ pub(super) enum Operation {
     Binary(BinaryOp, Number, Number),
 }
 
+impl Operation {
+    pub(super) fn operands(&self) -> impl Iterator<Item = Number> {
+        let (operands, n) = match *self {
+            Operation::Unary(_, a) => ([a, a], 1),
+            Operation::Binary(_, a, b) => ([a, b], 2),
+        };
+        operands.into_iter().take(n)
+    }
+}
+
 /// A formula of one variable: operations in order, value and slope.
 #[derive(Debug)]
 pub(super) struct Formula {

@@ -6,6 +6,7 @@ mod circles;
 mod formula;
 mod results;
 mod sides;
+mod straight;
 
 use super::super::code::{Code, Core, Instruction};
 use super::super::operation::{BinaryOp, Comparison, UnaryOp};
@@ -16,6 +17,7 @@ use crate::expr::program::hashing::HashMap;
 use results::Results;
 use std::collections::BTreeSet;
 use std::sync::Arc;
+pub(in crate::expr::program) use straight::written_out;
 
 /// Returns the steps of straight code.
 pub(super) fn lower(core: &Core) -> Steps {

@@ -2,7 +2,8 @@
 //!
 //! Numbers are doubles in the low halves of the sixteen vector registers, or stand in the frame;
 //! the arithmetic is that of SSE2, which every processor of this kind has and which the compiler
-//! uses for the same operations: the bits are the same.
+//! uses for the same operations: the bits are the same. AVX has the same instructions with a place
+//! of its own for the result, which saves copies.
 
 /// A vector register, 0 … 15.
 pub(super) type Xmm = u8;
@@ -15,6 +16,8 @@ pub(super) enum Place {
     Slot(u32),
     /// a number among the inputs, which are lost with the first call
     Input(u32),
+    /// an output
+    Output(u32),
 }
 
 /// Instructions on doubles: prefix and code.
@@ -62,10 +65,13 @@ pub(super) enum When {
     Unordered,
 }
 
-/// The registers for addresses: inputs, and the frame in a function with calls and in one without.
+/// The registers for addresses: inputs; frame and outputs in a function without calls and in one
+/// with calls.
 const RSI: u8 = 6;
-const RBX: u8 = 3;
 const RDI: u8 = 7;
+const RDX: u8 = 2;
+const RBX: u8 = 3;
+const RBP: u8 = 5;
 
 /// A jump whose distance is not known yet: the place of the distance in the code.
 #[derive(Clone, Copy, Debug)]
@@ -79,12 +85,12 @@ pub(super) struct Assembler {
 }
 
 impl Assembler {
-    /// Begins a function that is given the frame and the inputs.
+    /// Begins a function that is given the frame, the inputs and a place for the outputs.
     pub(super) fn new(calls: bool) -> Self {
         let mut code = Vec::new();
         if calls {
-            // push rbx (that aligns the stack); rbx = rdi
-            code.extend([0x53, 0x48, 0x89, 0xFB]);
+            // push rbx, rbp, rax (that aligns the stack); rbx = rdi; rbp = rdx
+            code.extend([0x53, 0x55, 0x50, 0x48, 0x89, 0xFB, 0x48, 0x89, 0xD5]);
         }
         Self { code, calls }
     }
@@ -92,7 +98,8 @@ impl Assembler {
     /// Ends it; returns the code of the function, whose result is in the vector register 0.
     pub(super) fn finish(mut self) -> Vec<u8> {
         if self.calls {
-            self.code.push(0x5B);
+            // pop rcx, rbp, rbx
+            self.code.extend([0x59, 0x5D, 0x5B]);
         }
         self.code.push(0xC3);
         self.code
@@ -102,6 +109,35 @@ impl Assembler {
     pub(super) fn operate(&mut self, op: Instruction, x: Xmm, place: Place) {
         self.code.push(op.0);
         self.operands(op.1, x, place);
+    }
+
+    /// Emits `x ← a op place`, by AVX.
+    pub(super) fn operate_on(&mut self, op: Instruction, x: Xmm, a: Xmm, place: Place) {
+        // the bits of register numbers stand inverted; 3 is the prefix F2
+        let high = (x >> 3 ^ 1) << 7;
+        let rest = (!a & 15) << 3 | 3;
+        match place {
+            Place::Xmm(y) if y >= 8 => self.code.extend([0xC4, high | 1 << 6 | 1, rest]),
+            _ => self.code.extend([0xC5, high | rest]),
+        }
+        self.code.push(op.1);
+        self.address(x & 7, place);
+    }
+
+    /// Sets all bits of `x` where `a` stands so to `place`, else none; by AVX.
+    pub(super) fn mask_on(&mut self, x: Xmm, relation: Relation, a: Xmm, place: Place) {
+        self.operate_on(MASK, x, a, place);
+        self.code.push(relation as u8);
+    }
+
+    /// Emits `x ← yes` where the bits of the mask are set, `no` elsewhere; by AVX.
+    pub(super) fn blend(&mut self, x: Xmm, mask: Xmm, yes: Xmm, no: Xmm) {
+        // the bits of register numbers stand inverted; 3 is the table of codes, 1 the prefix 66
+        let high = (x >> 3 ^ 1) << 7 | 1 << 6 | (yes >> 3 ^ 1) << 5;
+        let rest = (!no & 15) << 3 | 1;
+        self.code.extend([0xC4, high | 3, rest, 0x4B]);
+        self.address(x & 7, Place::Xmm(yes));
+        self.code.push(mask << 4);
     }
 
     /// Emits `x ← y`, all of it.
@@ -117,8 +153,9 @@ impl Assembler {
         }
     }
 
-    pub(super) fn store(&mut self, x: Xmm, slot: u32) {
-        self.operate(STORE, x, Place::Slot(slot));
+    /// Stores a number in memory.
+    pub(super) fn store(&mut self, x: Xmm, place: Place) {
+        self.operate(STORE, x, place);
     }
 
     /// Sets all bits of `x` where it stands so to `place`, else none.
@@ -182,24 +219,31 @@ impl Assembler {
 
     /// Emits the rest of an instruction: extension of register numbers, code, operands.
     fn operands(&mut self, code: u8, x: Xmm, place: Place) {
-        let (low, high) = (x & 7, x >> 3);
+        let last_high = match place {
+            Place::Xmm(y) => y >> 3,
+            _ => 0,
+        };
+        let extension = x >> 3 << 2 | last_high;
+        if extension != 0 {
+            self.code.push(0x40 | extension);
+        }
+        self.code.extend([0x0F, code]);
+        self.address(x & 7, place);
+    }
+
+    /// Emits the low bits of a register number, and a place.
+    fn address(&mut self, low: u8, place: Place) {
         let (base, number) = match place {
             Place::Xmm(y) => {
-                let extension = high << 2 | y >> 3;
-                if extension != 0 {
-                    self.code.push(0x40 | extension);
-                }
-                self.code.extend([0x0F, code, 0xC0 | low << 3 | (y & 7)]);
+                self.code.push(0xC0 | low << 3 | (y & 7));
                 return;
             }
             Place::Slot(k) if self.calls => (RBX, k),
             Place::Slot(k) => (RDI, k),
             Place::Input(k) => (RSI, k),
+            Place::Output(k) if self.calls => (RBP, k),
+            Place::Output(k) => (RDX, k),
         };
-        if high != 0 {
-            self.code.push(0x44);
-        }
-        self.code.extend([0x0F, code]);
         let distance = 8 * number;
         if distance < 128 {
             self.code.extend([0x40 | low << 3 | base, distance as u8]);

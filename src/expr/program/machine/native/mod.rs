@@ -6,14 +6,16 @@
 //!
 //! # Safety
 //!
-//! The code reads and writes slots and inputs that the steps name. [`Steps::are_sound`] has seen
-//! that all of them are inside the frame and inside the inputs, and that jumps lead forward; steps
-//! that are not sound are not translated. That frame and inputs are as long as they must be is
-//! asserted before each run.
+//! The code reads and writes slots and inputs that the steps name, and as many outputs as the
+//! program has. [`Steps::are_sound`] has seen that all of them are inside the frame and inside the
+//! inputs, and that jumps lead forward; steps that are not sound are not translated. That frame,
+//! inputs and outputs are as long as they must be is checked before each run.
 
 mod assembler;
 mod calls;
 mod columns;
+mod held;
+mod joins;
 mod needs;
 mod translate;
 
@@ -35,14 +37,18 @@ static N_MAPPINGS: AtomicUsize = AtomicUsize::new(0);
 /// Most slots and inputs, whose distances in bytes are numbers of 31 bits.
 const MOST_NUMBERS: usize = 1 << 28;
 
-/// A function that works on a frame and reads inputs; returns the first output.
-type Entry = unsafe extern "sysv64" fn(frame: *mut f64, inputs: *const f64) -> f64;
+/// A function that works on a frame, reads inputs and writes outputs; returns the first of these.
+type Entry =
+    unsafe extern "sysv64" fn(frame: *mut f64, inputs: *const f64, outputs: *mut f64) -> f64;
 
 /// Code that can run.
 pub(super) struct Native {
     entry: Entry,
     n_slots: usize,
     n_inputs: usize,
+    n_outputs: usize,
+    /// slots, and behind them outputs
+    frame_length: usize,
     /// where the code stands
     _code: Mapping,
     /// the steps that it calls, by address
@@ -54,8 +60,12 @@ struct Mapping(Mmap);
 
 impl Native {
     /// Translates steps; `None` where the system gives no memory that can be executed.
-    #[allow(unsafe_code)]
     pub(super) fn of(steps: &Steps, core: &Arc<Core>) -> Option<Self> {
+        Self::with(steps, core, is_x86_feature_detected!("avx"))
+    }
+
+    #[allow(unsafe_code)]
+    fn with(steps: &Steps, core: &Arc<Core>, has_avx: bool) -> Option<Self> {
         if core.outputs.is_empty()
             || steps.n_slots().max(core.n_inputs) >= MOST_NUMBERS
             || !steps.are_sound(core)
@@ -72,28 +82,43 @@ impl Native {
             argument: std::ptr::from_ref(step).expose_provenance(),
         });
         let calls: HashMap<u32, Call> = numbers.into_iter().zip(addresses).collect();
-        let code = Mapping::of(&translate::translate(steps, core, &calls))?;
+        let code = Mapping::of(&translate::translate(steps, core, &calls, has_avx))?;
         // SAFETY: the translation is a function of this kind, and `code` keeps it where it is
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(code.0.as_ptr()) };
         Some(Self {
             entry,
             n_slots: steps.n_slots(),
             n_inputs: core.n_inputs,
+            n_outputs: core.outputs.len(),
+            frame_length: steps.n_slots() + core.outputs.len(),
             _code: code,
             _called: called,
         })
     }
 
     /// Runs over a frame whose constants are in place, and returns the first output; `None` where
-    /// frame or inputs are too short.
+    /// frame or inputs are too short, or there are not as many places as outputs.
     #[inline(always)]
     #[allow(unsafe_code)]
-    pub(super) fn run(&self, frame: &mut [f64], inputs: &[f64]) -> Option<f64> {
-        if frame.len() < self.n_slots || inputs.len() < self.n_inputs {
+    pub(super) fn run(&self, frame: &mut [f64], inputs: &[f64], out: &mut [f64]) -> Option<f64> {
+        if frame.len() < self.n_slots || inputs.len() < self.n_inputs || out.len() != self.n_outputs
+        {
             return None;
         }
-        // SAFETY: the code stays inside frame and inputs; see the head of this file
-        Some(unsafe { (self.entry)(frame.as_mut_ptr(), inputs.as_ptr()) })
+        // SAFETY: the code stays inside frame, inputs and outputs; see the head of this file
+        Some(unsafe { (self.entry)(frame.as_mut_ptr(), inputs.as_ptr(), out.as_mut_ptr()) })
+    }
+
+    /// Does as [`Native::run`], the outputs behind the slots in the frame.
+    #[inline(always)]
+    #[allow(unsafe_code)]
+    pub(super) fn run_inside(&self, frame: &mut [f64], inputs: &[f64]) -> Option<f64> {
+        if frame.len() < self.frame_length || inputs.len() < self.n_inputs {
+            return None;
+        }
+        let frame = frame.as_mut_ptr();
+        // SAFETY: as above; the outputs are behind the slots, and both inside the frame
+        Some(unsafe { (self.entry)(frame, inputs.as_ptr(), frame.add(self.n_slots)) })
     }
 }
 

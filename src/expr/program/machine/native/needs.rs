@@ -8,7 +8,7 @@ use super::super::steps::{Extra, Step, Steps};
 /// The value is not needed any more.
 pub(super) const NEVER: u32 = u32::MAX;
 /// It is perhaps needed behind a jump or a target.
-const FAR: u32 = u32::MAX - 1;
+pub(super) const FAR: u32 = u32::MAX - 1;
 
 /// When the slots of a step are needed again behind it.
 #[derive(Clone, Copy, Debug)]
@@ -19,11 +19,12 @@ pub(super) struct Next {
     pub(super) results: [u32; 2],
 }
 
-/// Returns for each step when its slots are needed again.
+/// Returns for each step when its slots are needed again; and by slot the last step behind a jump
+/// or a target that may need it.
 ///
 /// A value that is read behind a jump may be needed; slots for what lies between the steps of one
 /// instruction never outlast it.
-pub(super) fn needs(steps: &Steps, core: &Core, is_target: &[bool]) -> Vec<Next> {
+pub(super) fn needs(steps: &Steps, core: &Core, is_target: &[bool]) -> (Vec<Next>, Vec<u32>) {
     let nothing = Next {
         operands: [NEVER; 4],
         results: [NEVER; 2],
@@ -31,7 +32,7 @@ pub(super) fn needs(steps: &Steps, core: &Core, is_target: &[bool]) -> Vec<Next>
     let mut needs = vec![nothing; steps.steps.len()];
     let mut future = Future {
         noted: vec![(u32::MAX, NEVER); steps.n_slots()],
-        is_read_later: vec![false; steps.n_slots()],
+        last_read: vec![0; steps.n_slots()],
         stretch: 0,
         steps,
     };
@@ -75,14 +76,15 @@ pub(super) fn needs(steps: &Steps, core: &Core, is_target: &[bool]) -> Vec<Next>
         }
         future.stretch += u32::from(is_target[k]);
     }
-    needs
+    (needs, future.last_read)
 }
 
 /// The knowledge of the steps behind the one at hand.
 struct Future<'a> {
     /// by slot: the stretch without jumps and targets in which this was noted, and the step
     noted: Vec<(u32, u32)>,
-    is_read_later: Vec<bool>,
+    /// by slot: the last step that reads it; the first, which reads an input, stands for none
+    last_read: Vec<u32>,
     stretch: u32,
     steps: &'a Steps,
 }
@@ -90,7 +92,15 @@ struct Future<'a> {
 impl Future<'_> {
     fn read(&mut self, slot: u32, step: usize) {
         self.noted[slot as usize] = (self.stretch, step as u32);
-        self.is_read_later[slot as usize] = true;
+        if self.last_read[slot as usize] == 0 && self.outlasts(slot) {
+            self.last_read[slot as usize] = step as u32;
+        }
+    }
+
+    /// Returns whether the value of a slot may be needed behind a jump.
+    fn outlasts(&self, slot: u32) -> bool {
+        let extra = slot.checked_sub(self.steps.n_registers);
+        extra.is_none_or(|k| self.steps.extras[k as usize] != Extra::Between)
     }
 
     fn next(&self, slot: u32) -> u32 {
@@ -98,12 +108,9 @@ impl Future<'_> {
         if stretch == self.stretch {
             return step;
         }
-        let extra = slot.checked_sub(self.steps.n_registers);
-        let outlasts = extra.is_none_or(|k| self.steps.extras[k as usize] != Extra::Between);
-        if outlasts && self.is_read_later[slot as usize] {
-            FAR
-        } else {
-            NEVER
+        match self.last_read[slot as usize] {
+            0 => NEVER,
+            _ => FAR,
         }
     }
 }

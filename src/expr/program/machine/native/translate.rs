@@ -1,47 +1,40 @@
 //! From steps to machine code: results stay in vector registers as long as there is room, and are
 //! stored when they must be.
 //!
-//! A result is stored before its register is given away, before a jump or its target, before a call
-//! and at the end, and only if it is still needed. The register that is given away is the one whose
-//! value is needed last. Constants, inputs that were stored and other numbers in the frame are
-//! operands where they stand.
+//! A result is stored before its register is given away, before a call and at the end, and only if
+//! it is still needed; jumps leave it where it is (`joins.rs`). The register that is
+//! given away is the one whose value is needed last. Constants, inputs that were stored and other
+//! numbers in the frame are operands where they stand. Outputs have their places outside.
 
 use super::super::super::code::Core;
 use super::super::super::operation::{BinaryOp, Comparison, UnaryOp};
 use super::super::steps::{Step, Steps};
-use super::assembler::{self, Assembler, Instruction, Jump, Place, Relation, When, Xmm};
+use super::assembler::{self, Assembler, Instruction, Place, Relation, When, Xmm};
 use super::calls;
+use super::held::{Held, Holding, Landing, N_HOLDING, ONE, OTHER};
 use super::needs::{NEVER, Next, needs};
 use crate::expr::program::hashing::HashMap;
-
-/// Registers that hold values of slots; the two behind them are for what lies between two
-/// instructions.
-const N_HOLDING: usize = 14;
-const ONE: Xmm = 14;
-const OTHER: Xmm = 15;
 
 /// In no register.
 const NOWHERE: u8 = u8::MAX;
 
-/// A value in a register.
-#[derive(Clone, Copy, Debug)]
-struct Held {
-    slot: u32,
-    /// the frame has it, too
-    is_stored: bool,
-    /// when it is needed again
-    next: u32,
-}
-
-struct Translation<'a> {
-    assembler: Assembler,
-    held: [Option<Held>; N_HOLDING],
+pub(super) struct Translation<'a> {
+    pub(super) assembler: Assembler,
+    pub(super) held: Holding,
     /// by slot: the register
-    places: Vec<u8>,
+    pub(super) places: Vec<u8>,
+    /// by slot: where it stands in memory
+    homes: Vec<Place>,
+    /// by slot: the last step behind a jump that may need it
+    pub(super) last_read: Vec<u32>,
     /// registers that the step at hand still needs
     pinned: u16,
-    /// by step: the jumps that lead there
-    jumps: HashMap<u32, Vec<Jump>>,
+    /// by step: what leads there
+    pub(super) landings: HashMap<u32, Landing>,
+    /// whether the processor has AVX
+    has_avx: bool,
+    /// whether one gets here by going on
+    pub(super) is_reached: bool,
     /// by step: what is called for it
     calls: &'a HashMap<u32, Call>,
 }
@@ -90,16 +83,26 @@ fn instruction(op: BinaryOp) -> Option<Instruction> {
     }
 }
 
-/// Returns the code of these steps; `calls` are the steps that are called, by number.
-pub(super) fn translate(steps: &Steps, core: &Core, calls: &HashMap<u32, Call>) -> Vec<u8> {
+/// Returns the code of these steps, with AVX or without; `calls` are the steps that are called, by
+/// number.
+pub(super) fn translate(
+    steps: &Steps,
+    core: &Core,
+    calls: &HashMap<u32, Call>,
+    has_avx: bool,
+) -> Vec<u8> {
     let is_target = steps.jumped_to();
-    let needs = needs(steps, core, &is_target);
+    let (needs, last_read) = needs(steps, core, &is_target);
     let mut translation = Translation {
         assembler: Assembler::new(steps.steps.iter().any(is_call)),
         held: [None; N_HOLDING],
         places: vec![NOWHERE; steps.n_slots()],
+        homes: homes(steps, core),
+        last_read,
         pinned: 0,
-        jumps: HashMap::default(),
+        landings: HashMap::default(),
+        has_avx,
+        is_reached: true,
         calls,
     };
     for (k, (step, next)) in (0u32..).zip(steps.steps.iter().zip(&needs)) {
@@ -112,21 +115,40 @@ pub(super) fn translate(steps: &Steps, core: &Core, calls: &HashMap<u32, Call>) 
     if is_target[end] {
         translation.target(end as u32);
     }
-    translation.store_all();
-    if let Some(&output) = core.outputs.first() {
-        let place = translation.place(output);
-        translation.assembler.load(0, place);
-    }
+    translation.outputs(&core.outputs);
     translation.assembler.finish()
 }
 
+/// Returns by slot where it stands in memory: outputs in their places, the rest in the frame, and
+/// there as well what is called for.
+fn homes(steps: &Steps, core: &Core) -> Vec<Place> {
+    let mut homes: Vec<Place> = (0..steps.n_slots() as u32).map(Place::Slot).collect();
+    for (k, &slot) in (0u32..).zip(&core.outputs) {
+        let home = &mut homes[slot as usize];
+        let is_constant = (slot as usize) < core.constants.len();
+        if !is_constant && *home == Place::Slot(slot) {
+            *home = Place::Output(k);
+        }
+    }
+    for step in &steps.steps {
+        steps.slots_of_called(step, core, |slot| homes[slot as usize] = Place::Slot(slot));
+    }
+    homes
+}
+
 impl Translation<'_> {
-    /// Jumps lead here.
-    fn target(&mut self, step: u32) {
+    /// Leaves the outputs in their places, and the first as the result.
+    fn outputs(&mut self, outputs: &[u32]) {
         self.store_all();
-        self.forget();
-        for jump in self.jumps.remove(&step).unwrap_or_default() {
-            self.assembler.lands(jump);
+        for (k, &slot) in (0u32..).zip(outputs) {
+            if self.homes[slot as usize] != Place::Output(k) {
+                let x = self.readable(slot, ONE);
+                self.assembler.store(x, Place::Output(k));
+            }
+        }
+        if let Some(&first) = outputs.first() {
+            let place = self.place(first);
+            self.assembler.load(0, place);
         }
     }
 
@@ -152,6 +174,9 @@ impl Translation<'_> {
                 }
             },
             Step::Binary { op, a, b, to } => match instruction(op) {
+                Some(instruction) if self.has_avx => {
+                    self.arithmetic_by_avx(op, instruction, [a, b], to, next);
+                }
                 Some(instruction) => self.arithmetic(op, instruction, [a, b], to, next),
                 None if op == BinaryOp::Along => self.along(a, b, to, next),
                 None if op == BinaryOp::Kept => self.kept(a, b, to, next),
@@ -192,9 +217,9 @@ impl Translation<'_> {
                 positive,
             } => self.branch(selector, [negative, zero, positive], next),
             Step::Go { target } => {
-                self.store_all();
                 self.jump(When::Always, target);
                 self.forget();
+                self.is_reached = false;
             }
         }
     }
@@ -223,7 +248,6 @@ impl Translation<'_> {
         let x = self.readable(first, ONE);
         let second = self.place(second);
         self.used([a, b], next);
-        self.store_all();
         self.assembler.operate(assembler::COMPARE, x, second);
         match comparison {
             Comparison::Lt => self.jump(When::BelowOrEqual, target),
@@ -238,7 +262,6 @@ impl Translation<'_> {
     fn branch(&mut self, selector: u32, [negative, zero, positive]: [u32; 3], next: &Next) {
         let x = self.readable(selector, ONE);
         self.used([selector], next);
-        self.store_all();
         self.bits(assembler::XOR, OTHER, OTHER);
         self.assembler
             .operate(assembler::COMPARE, x, Place::Xmm(OTHER));
@@ -270,6 +293,39 @@ impl Translation<'_> {
         let x = self.own(a, next_of_a);
         self.assembler.operate(instruction, x, second);
         self.used_once(b, next_of_b);
+        self.hold(x, to, next.results[0]);
+    }
+
+    fn arithmetic_by_avx(
+        &mut self,
+        op: BinaryOp,
+        instruction: Instruction,
+        [mut a, mut b]: [u32; 2],
+        to: u32,
+        next: &Next,
+    ) {
+        let [mut next_of_a, mut next_of_b, ..] = next.operands;
+        // the first operand is in a register
+        let is_symmetric = matches!(op, BinaryOp::Add | BinaryOp::Mul);
+        if is_symmetric && self.register(a) == NOWHERE {
+            (a, b) = (b, a);
+            (next_of_a, next_of_b) = (next_of_b, next_of_a);
+        }
+        let second = self.place(b);
+        let first = self.readable(a, ONE);
+        // the result may take the place of an operand
+        self.used_once(a, next_of_a);
+        self.used_once(b, next_of_b);
+        self.pinned = 0;
+        for place in [Place::Xmm(first), second] {
+            if let Place::Xmm(x) = place
+                && self.held.get(usize::from(x)).is_some_and(Option::is_some)
+            {
+                self.pinned |= 1 << x;
+            }
+        }
+        let x = self.take();
+        self.assembler.operate_on(instruction, x, first, second);
         self.hold(x, to, next.results[0]);
     }
 
@@ -328,14 +384,21 @@ impl Translation<'_> {
         };
         let [a_at, b_at, yes_at, no_at] = [a, b, yes, no].map(|slot| self.place(slot));
         let x = self.take();
-        self.assembler.load(OTHER, a_at);
-        self.assembler.mask(OTHER, relation, b_at);
-        self.assembler.load(ONE, yes_at);
-        self.bits(assembler::AND, ONE, OTHER);
-        self.assembler.load(x, no_at);
-        self.bits(assembler::AND_NOT, OTHER, x);
-        self.bits(assembler::OR, OTHER, ONE);
-        self.assembler.copy(x, OTHER);
+        if self.has_avx {
+            let first = self.readable(a, ONE);
+            self.assembler.mask_on(OTHER, relation, first, b_at);
+            let [yes, no] = [self.readable(yes, ONE), self.readable(no, x)];
+            self.assembler.blend(x, OTHER, yes, no);
+        } else {
+            self.assembler.load(OTHER, a_at);
+            self.assembler.mask(OTHER, relation, b_at);
+            self.assembler.load(ONE, yes_at);
+            self.bits(assembler::AND, ONE, OTHER);
+            self.assembler.load(x, no_at);
+            self.bits(assembler::AND_NOT, OTHER, x);
+            self.bits(assembler::OR, OTHER, ONE);
+            self.assembler.copy(x, OTHER);
+        }
         self.used([a, b, yes, no], next);
         self.hold(x, to, next.results[0]);
     }
@@ -344,20 +407,15 @@ impl Translation<'_> {
         self.assembler.operate(op, x, Place::Xmm(y));
     }
 
-    fn jump(&mut self, when: When, target: u32) {
-        let jump = self.assembler.jump(when);
-        self.jumps.entry(target).or_default().push(jump);
-    }
-
     /// Returns the register of a slot.
     fn register(&self, slot: u32) -> u8 {
         self.places[slot as usize]
     }
 
     /// Returns where the value of a slot stands. It stays there for this step.
-    fn place(&mut self, slot: u32) -> Place {
+    pub(super) fn place(&mut self, slot: u32) -> Place {
         match self.register(slot) {
-            NOWHERE => Place::Slot(slot),
+            NOWHERE => self.homes[slot as usize],
             x => {
                 self.pinned |= 1 << x;
                 Place::Xmm(x)
@@ -418,11 +476,7 @@ impl Translation<'_> {
             return;
         }
         self.places[slot as usize] = x;
-        self.held[x as usize] = Some(Held {
-            slot,
-            is_stored: false,
-            next,
-        });
+        self.held[x as usize] = Some(Held { slot, next });
     }
 
     /// Notes when slots that were read are needed again.
@@ -450,13 +504,11 @@ impl Translation<'_> {
         }
     }
 
-    /// Stores a value that the frame does not have.
-    fn store(&mut self, x: Xmm) {
-        if let Some(held) = &mut self.held[x as usize]
-            && !held.is_stored
-        {
-            held.is_stored = true;
-            self.assembler.store(x, held.slot);
+    /// Stores a value in its place in memory.
+    pub(super) fn store(&mut self, x: Xmm) {
+        if let Some(held) = self.held[x as usize] {
+            let home = self.homes[held.slot as usize];
+            self.assembler.store(x, home);
         }
     }
 
@@ -466,7 +518,7 @@ impl Translation<'_> {
         }
     }
 
-    fn forget(&mut self) {
+    pub(super) fn forget(&mut self) {
         for x in 0..N_HOLDING as u8 {
             self.release(x);
         }

@@ -55,6 +55,11 @@ impl std::fmt::Debug for Columns {
 }
 
 impl Columns {
+    /// Returns whether this machine has the instructions for such loops.
+    pub(in crate::expr::program) fn are_to_be_had() -> bool {
+        is_x86_feature_detected!("avx2")
+    }
+
     /// Returns whether the processor has instructions for it.
     pub(in crate::expr::program) fn can(instruction: &Instruction) -> bool {
         use BinaryOp::{Add, Along, And, Div, Kept, Mul, Or, Sub};
@@ -98,7 +103,7 @@ impl Columns {
         code: &[Instruction],
         wanted: &[u32],
     ) -> Option<Self> {
-        if !is_x86_feature_detected!("avx2")
+        if !Self::are_to_be_had()
             || code.len() > MOST_INSTRUCTIONS
             || core.size as usize >= super::MOST_NUMBERS / 8
         {
