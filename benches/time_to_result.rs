@@ -1,9 +1,9 @@
 //! The time from a file to files, and how it grows with the model: whole `cognate run` processes at sizes N and 2N, beside the part of
 //! it that solves. Before them small models of the references, and the start of the program (goals: 5 ms, 2 ms).
 //!
-//! `cargo bench --bench time_to_result`, `cargo bench --bench time_to_result -- small`: the small models alone; or `cargo bench --bench time_to_result -- chain`: only families whose names contain a word;
-//! `-- chain 4`: four sizes, each twice the one before. The slope is that of log time over log size between the last two sizes: 1 is
-//! linear.
+//! `cargo bench --bench time_to_result`, or with a word behind `--`: `small` for the small models alone, `chain` for the families whose
+//! names contain it; `-- chain 4`: four sizes, each twice the one before. The slope is that of log time over log size between the last
+//! two sizes: 1 is linear.
 
 use std::fmt::Write as _;
 use std::path::Path;
