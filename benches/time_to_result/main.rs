@@ -1,9 +1,10 @@
 //! The time from a file to files, and how it grows with the model: whole `cognate run` processes at sizes N and 2N, beside the part of
-//! it that solves, and beside MuJoCo where `python3` has it.
+//! it that solves, and beside MuJoCo where `python3` has it. Before them small models of the references, and the start of the program
+//! (goals: 5 ms, 2 ms).
 //!
-//! `cargo bench --bench time_to_result`, or `cargo bench --bench time_to_result -- chain`: only families whose names contain a word;
-//! `-- chain 4`: four sizes, each twice the one before. The slope is that of log time over log size between the last two sizes: 1 is
-//! linear.
+//! `cargo bench --bench time_to_result`, or with a word behind `--`: `small` for the small models alone, `chain` for the families whose
+//! names contain it; `-- chain 4`: four sizes, each twice the one before. The slope is that of log time over log size between the last
+//! two sizes: 1 is linear.
 
 mod mujoco;
 
@@ -41,6 +42,17 @@ const FAMILIES: &[Family] = &[
 /// Runs of a size, of which the fastest counts.
 const RUNS: usize = 3;
 
+/// Models of tests/data/references whose whole runs should take at most 5 ms.
+const SMALL: &[&str] = &[
+    "a01_pendulum",
+    "bounce_k1e6",
+    "a04_bricard",
+    "slider_crank_kin",
+    "a03_andrews",
+];
+/// Runs of a small model, taken in turns, of which the median counts.
+const SMALL_RUNS: usize = 25;
+
 fn main() {
     let words: Vec<String> = std::env::args()
         .skip(1)
@@ -55,6 +67,9 @@ fn main() {
     let folder =
         std::env::temp_dir().join(format!("cognate-time-to-result-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder for models");
+    if word.is_none_or(|w| "small".contains(w.as_str())) {
+        small(&folder);
+    }
     let peer = Peer::found();
     println!("{}", peer.told());
     println!(
@@ -92,6 +107,44 @@ fn main() {
         }
     }
     std::fs::remove_dir_all(&folder).expect("the folder can be removed");
+}
+
+/// Prints the medians of the start of the program and of small models, taken in turns.
+fn small(folder: &Path) {
+    let references = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/references");
+    let out = folder.join("small");
+    let mut times = vec![Vec::new(); SMALL.len() + 1];
+    for _ in 0..SMALL_RUNS {
+        let (start, models) = times.split_first_mut().expect("the start");
+        start.push(seconds(&["--version"]));
+        for (name, times) in SMALL.iter().zip(models) {
+            let script = references.join(name).with_extension("acf");
+            let [script, out] = [&script, &out].map(|path| path.to_string_lossy());
+            times.push(seconds(&["run", &script, "--out", &out, "--quiet"]));
+            std::fs::remove_dir_all(folder.join("small")).expect("results");
+        }
+    }
+    println!("{:36}{:>8}{:>14}", "", "", "file to files");
+    for (name, mut times) in std::iter::once(&"start").chain(SMALL).zip(times) {
+        times.sort_by(f64::total_cmp);
+        println!("{name:44}{:>14}", milliseconds(times[SMALL_RUNS / 2]));
+    }
+}
+
+/// Returns the seconds that the program takes with these arguments.
+fn seconds(arguments: &[&str]) -> f64 {
+    let begin = Instant::now();
+    let done = Command::new(env!("CARGO_BIN_EXE_cognate"))
+        .args(arguments)
+        .output()
+        .expect("cognate runs");
+    let seconds = begin.elapsed().as_secs_f64();
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    seconds
 }
 
 fn milliseconds(seconds: f64) -> String {

@@ -219,9 +219,13 @@ pub type Outcome = Result<Exit, Failure>;
 /// Stack of the thread that does the work, in bytes; what is not used is not taken.
 const STACK_BYTES: usize = 256 << 20;
 
-/// Runs the command that the arguments of the process name.
-pub fn main() -> ExitCode {
+/// Runs the command that the arguments of the process name; `one_thread` is called before the work
+/// begins if a single thread does it.
+pub fn main(one_thread: fn()) -> ExitCode {
     let cli = parsed();
+    if !matches!(cli.verb, Verb::Sweep(_)) {
+        one_thread();
+    }
     std::thread::scope(|scope| {
         let worker = std::thread::Builder::new().stack_size(STACK_BYTES);
         match worker.spawn_scoped(scope, || obey(&cli)) {

@@ -1,6 +1,7 @@
-//! The frequent forms of a dataset's text, taken apart in one pass.
+//! The frequent forms of the text of a dataset or a command file, taken apart in one pass.
 //!
-//! The form of a dataset is that of `grammar/dataset.pest`. Most files have only words and marks,
+//! The form of a dataset is that of `grammar/dataset.pest`, that of a command file the one of
+//! `grammar/command.pest`. Most files have only words and marks,
 //! lines that go on behind a comma at the beginning of the next (a comma or a backslash may end the
 //! first as well), quoted texts and comments. Of
 //! these the same comes out here, for a small part of the work. Whatever else stands in a text
@@ -16,13 +17,29 @@ pub(super) fn dataset(text: &str) -> Option<Syntax> {
         at: 0,
     };
     let title = reader.rest_of_line()?;
-    let mut syntax = Syntax {
+    let syntax = Syntax {
         title,
         ..Syntax::default()
     };
     if reader.at == text.len() {
         return Some(syntax);
     }
+    items(text, reader, syntax, true)
+}
+
+/// Takes a command file, or the part of it after the headings, apart; `None`: something in it is
+/// not frequent.
+pub(super) fn script(text: &str) -> Option<Syntax> {
+    let reader = Reader {
+        bytes: text.as_bytes(),
+        at: 0,
+    };
+    items(text, reader, Syntax::default(), false)
+}
+
+/// Reads comments and statements to the end of the text, or to the statement END where it `ends`
+/// the text.
+fn items(text: &str, mut reader: Reader, mut syntax: Syntax, ends: bool) -> Option<Syntax> {
     let mut name = None;
     while let Some(byte) = reader.here() {
         match byte {
@@ -34,7 +51,7 @@ pub(super) fn dataset(text: &str) -> Option<Syntax> {
                 name = view_name(text.get(span.start..span.end)?).or(name);
                 syntax.items.push(Item::Comment(span));
             }
-            _ if reader.is_end()? => {
+            _ if ends && reader.is_end()? => {
                 let end = reader.at + END.len();
                 syntax.end = Some(Span::new(reader.at, end));
                 syntax.after = Span::new(end, text.len());
@@ -237,7 +254,7 @@ impl Reader<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dataset::syntax::{Source, dataset_by_grammar};
+    use crate::dataset::syntax::{Source, dataset_by_grammar, script_by_grammar};
     use proptest::prelude::*;
     use std::path::Path;
 
@@ -245,15 +262,19 @@ mod tests {
         dataset_by_grammar(&Source::from_text(None, text), &mut Vec::new())
     }
 
-    /// Datasets below a folder, as text.
-    fn datasets(folder: &Path, found: &mut Vec<String>) {
+    fn script_of_grammar(text: &str) -> Syntax {
+        script_by_grammar(&Source::from_text(None, text), &mut Vec::new())
+    }
+
+    /// Files with an ending below a folder, as text.
+    fn files(folder: &Path, ending: &str, found: &mut Vec<String>) {
         for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
             let path = entry.path();
             if path.is_dir() {
-                datasets(&path, found);
+                files(&path, ending, found);
             } else if path
                 .extension()
-                .is_some_and(|e| e.eq_ignore_ascii_case("adm"))
+                .is_some_and(|e| e.eq_ignore_ascii_case(ending))
             {
                 let bytes = std::fs::read(&path).expect("a file can be read");
                 found.push(Source::from_bytes(None, &bytes).text);
@@ -261,20 +282,38 @@ mod tests {
         }
     }
 
-    #[test]
-    fn datasets_come_out_as_the_grammar_says() {
+    /// Files of examples, of tests and of the corpus, as text.
+    fn all_files(ending: &str) -> Vec<String> {
         let mut all = Vec::new();
         for folder in ["examples", "tests"] {
-            datasets(Path::new(folder), &mut all);
+            files(Path::new(folder), ending, &mut all);
         }
         if let Some(corpus) = std::env::var_os("COGNATE_CORPUS") {
-            datasets(Path::new(&corpus), &mut all);
+            files(Path::new(&corpus), ending, &mut all);
         }
-        let mut frequent = 0;
-        for text in all.iter().filter(|text| text.len() < 100_000) {
+        all.retain(|text| text.len() < 100_000);
+        all
+    }
+
+    #[test]
+    fn datasets_come_out_as_the_grammar_says() {
+        let (all, mut frequent) = (all_files("adm"), 0);
+        for text in &all {
             if let Some(syntax) = dataset(text) {
                 frequent += 1;
                 assert_eq!(syntax, by_grammar(text), "{text}");
+            }
+        }
+        assert!(2 * frequent > all.len(), "{frequent} of {}", all.len());
+    }
+
+    #[test]
+    fn command_files_come_out_as_the_grammar_says() {
+        let (all, mut frequent) = (all_files("acf"), 0);
+        for text in &all {
+            if let Some(syntax) = script(text) {
+                frequent += 1;
+                assert_eq!(syntax, script_of_grammar(text), "{text}");
             }
         }
         assert!(2 * frequent > all.len(), "{frequent} of {}", all.len());
@@ -350,6 +389,9 @@ mod tests {
             let text: String = [begin].into_iter().chain(pieces.iter().map(|&k| PIECES[k])).collect();
             if let Some(syntax) = dataset(&text) {
                 prop_assert_eq!(syntax, by_grammar(&text), "{:?}", text);
+            }
+            if let Some(syntax) = script(&text) {
+                prop_assert_eq!(syntax, script_of_grammar(&text), "{:?}", text);
             }
         }
     }

@@ -283,12 +283,20 @@ pub(super) fn dataset_by_grammar(source: &Source, out: &mut Vec<Diagnostic>) -> 
 
 /// Takes a command file, or the part of it after the headings, apart.
 pub fn script(source: &Source, out: &mut Vec<Diagnostic>) -> Syntax {
+    frequent::script(&source.text).unwrap_or_else(|| script_by_grammar(source, out))
+}
+
+/// Takes a command file apart as the grammar says, whatever stands in it.
+pub(super) fn script_by_grammar(source: &Source, out: &mut Vec<Diagnostic>) -> Syntax {
     parse(source, Rule::script, out)
 }
 
 /// The first two lines of a command file.
 pub fn headings(source: &Source) -> Vec<Span> {
-    let Ok(pairs) = Grammar::parse(Rule::heading, &source.text) else {
+    // two lines have two ends of two characters at most
+    let mut ends = source.text.match_indices(['\n', '\r']);
+    let beyond = ends.nth(4).map_or(source.text.len(), |end| end.0);
+    let Ok(pairs) = Grammar::parse(Rule::heading, &source.text[..beyond]) else {
         return Vec::new();
     };
     let lines = pairs.flat_map(|p| p.into_inner());

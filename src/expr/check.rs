@@ -23,6 +23,8 @@ pub const MOST_CHARACTERS: usize = 1_000_000;
 pub const DEEPEST_NESTING: usize = 256;
 /// Most levels of the tree that recursion follows: the nesting, and chains of signs and powers.
 const DEEPEST_TREE: usize = 512;
+/// Words for which there is room before the first is read.
+const USUAL_WORDS: usize = 32;
 
 /// The limits of I-DEAS, so that hosts may apply them too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,6 +83,15 @@ pub(crate) enum Atom {
     Named(u32),
 }
 
+/// A token of a text, its end left out.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Word {
+    pub span: Span,
+    pub kind: Kind,
+    /// its meaning; of marks and of IF there is none
+    pub atom: Option<Atom>,
+}
+
 /// An open parenthesis and the argument that is being read inside it.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
@@ -111,8 +122,8 @@ struct Check<'a> {
     profile: Profile,
     names: &'a Names,
     limits: Limits,
-    /// meanings collected so far
-    atoms: Vec<Atom>,
+    /// tokens read so far
+    words: Vec<Word>,
     /// open calls and groups, outermost first
     frames: Vec<Frame>,
     /// arguments of all open calls, those of inner calls last
@@ -135,14 +146,14 @@ struct Counted {
     line_breaks: usize,
 }
 
-/// Returns the meaning of all numbers and names of a text, or its first mistake.
+/// Returns the tokens of a text with the meanings of numbers and names, or its first mistake.
 pub(crate) fn check(
     text: &str,
     dialect: Dialect,
     profile: Profile,
     limits: Limits,
     names: &Names,
-) -> Result<Vec<Atom>, Fault> {
+) -> Result<Vec<Word>, Fault> {
     if let Some(span) = character_after(text, MOST_CHARACTERS) {
         return Err(Fault::new(FaultKind::Characters, span).about(About::Limit(MOST_CHARACTERS)));
     }
@@ -153,7 +164,7 @@ pub(crate) fn check(
         profile,
         names,
         limits,
-        atoms: Vec::new(),
+        words: Vec::with_capacity(text.len().min(USUAL_WORDS)),
         frames: Vec::new(),
         arguments: Vec::new(),
         depth: 0,
@@ -162,7 +173,7 @@ pub(crate) fn check(
         counted: Counted::default(),
     };
     check.run()?;
-    Ok(check.atoms)
+    Ok(check.words)
 }
 
 /// Returns the place of the character after the first `n`, if there is one.
@@ -187,7 +198,7 @@ impl Check<'_> {
                     self.next()?
                 }
                 Kind::Number { literal, degrees } => {
-                    self.atoms.push(Atom::Number { literal, degrees });
+                    self.means(Atom::Number { literal, degrees });
                     let after = self.next()?;
                     match self.after_operand(after)? {
                         Some(token) => token,
@@ -208,12 +219,19 @@ impl Check<'_> {
         }
     }
 
+    /// Gives the token that was read last its meaning.
+    fn means(&mut self, atom: Atom) {
+        if let Some(word) = self.words.last_mut() {
+            word.atom = Some(atom);
+        }
+    }
+
     /// Reads a constant with its suffix, or the beginning of a call; returns the token that the
     /// next operand begins with.
     fn name(&mut self, name: Token) -> Result<Option<Token>, Fault> {
         let text = &self.text[name.span.start..name.span.end];
         if let Some(entry) = self.names.find(text) {
-            self.atoms.push(Atom::Named(entry));
+            self.means(Atom::Named(entry));
             return match self.names.entry(entry).arguments.len() {
                 0 => self.after_constant(),
                 _ => self.call(Open::Named(entry), name),
@@ -224,12 +242,12 @@ impl Check<'_> {
         };
         let open = match meaning {
             Symbol::Constant(c) => {
-                self.atoms.push(Atom::Constant(c));
+                self.means(Atom::Constant(c));
                 return self.after_constant();
             }
             Symbol::If => Open::If(0),
             Symbol::Callee(callee) => {
-                self.atoms.push(Atom::Callee(callee));
+                self.means(Atom::Callee(callee));
                 Open::Call(callee)
             }
         };
@@ -464,6 +482,11 @@ impl Check<'_> {
         )?;
         let token = token?;
         if token.kind != Kind::End {
+            self.words.push(Word {
+                span: token.span,
+                kind: token.kind,
+                atom: None,
+            });
             self.symbols += 1;
             if self.symbols > self.limits.symbols {
                 return Err(Fault::new(FaultKind::Symbols, token.span)

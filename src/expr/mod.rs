@@ -22,6 +22,7 @@
 //! | | `advice.rs` `foreign.rs` | advice on mistakes; words of other languages |
 //! | | `lint/` | warnings about what is legal but hardly meant |
 //! | tree | `grammar/*.pest` `parse.rs` `ast.rs` `print.rs` | grammars, tree, and back to source |
+//! | | `shape.rs` | trees that texts of the same kinds of tokens share |
 //! | | `translate.rs` | expression functions in the language of direct entry |
 //! | value | `walk.rs` | the reference evaluator; names the operation that has no value |
 //! | program | `compile.rs` `program/` | shared, folded, straight-line code over any number |
@@ -51,6 +52,7 @@ mod names;
 mod parse;
 mod print;
 pub mod program;
+mod shape;
 mod shared;
 pub mod signature;
 pub mod smoothness;

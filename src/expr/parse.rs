@@ -3,12 +3,14 @@
 //!
 //! The grammars (`grammar/function.pest`, `grammar/expression.pest`) define the languages and make
 //! the tree. The check has determined the meaning of names and numbers in the order of the text;
-//! the pairs take them in that order.
+//! the pairs take them in that order. Texts whose tokens are of the same kinds have the same tree
+//! (`shape.rs`).
 
 use super::advice;
 use super::ast::{Ast, BinaryOp, Dialect, Node, NodeIx};
-use super::check::{Atom, Limits, check};
+use super::check::{Atom, Limits, Word, check};
 use super::names::Names;
+use super::shape;
 use super::symbols::Profile;
 use crate::diagnostic::{Diagnostic, Span};
 use pest::Parser;
@@ -68,12 +70,9 @@ fn read(
     limits: Limits,
     names: &Arc<Names>,
 ) -> Result<Ast, Diagnostic> {
-    let atoms = check(text, dialect, profile, limits, names)
+    let words = check(text, dialect, profile, limits, names)
         .map_err(|fault| advice::explain(text, dialect, names, &fault))?;
-    let tree = match dialect {
-        Dialect::Function => function::tree(text, atoms),
-        Dialect::Expression => expression::tree(text, atoms),
-    };
+    let tree = shape::tree(dialect, &words, || by_grammar(text, dialect, &words));
     let (nodes, spans) = tree.ok_or_else(|| {
         // The check and the grammar disagree: a bug of ours, yet the text cannot be read.
         debug_assert!(
@@ -91,6 +90,18 @@ fn read(
         root,
         names: names.clone(),
     })
+}
+
+/// The nodes of a tree, children before parents, and their places.
+pub(super) type Tree = (Vec<Node>, Vec<Span>);
+
+/// Returns the tree of a text as its grammar makes it; `None`: the grammar refuses the text.
+fn by_grammar(text: &str, dialect: Dialect, words: &[Word]) -> Option<Tree> {
+    let atoms = words.iter().filter_map(|w| w.atom).collect();
+    match dialect {
+        Dialect::Function => function::tree(text, atoms),
+        Dialect::Expression => expression::tree(text, atoms),
+    }
 }
 
 /// The role of a pair of either grammar, as far as the tree depends on it.
@@ -120,7 +131,7 @@ macro_rules! grammar {
             #[grammar = $file]
             struct Grammar;
 
-            pub fn tree(text: &str, atoms: Vec<Atom>) -> Option<(Vec<Node>, Vec<Span>)> {
+            pub fn tree(text: &str, atoms: Vec<Atom>) -> Option<Tree> {
                 let whole = Grammar::parse(Rule::whole, text).ok()?.next()?;
                 let mut builder = Builder::new(atoms, role);
                 builder.operand(whole.into_inner().next()?)?;
@@ -289,4 +300,73 @@ impl<R: pest::RuleType> Builder<R> {
 fn place<R: pest::RuleType>(pair: &Pair<R>) -> Span {
     let span = pair.as_span();
     Span::new(span.start(), span.end())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Random legal texts, made of bytes of a generator: numbers, names and blanks vary, so that
+    /// shapes come by again.
+    struct Texts(u64);
+
+    impl Texts {
+        fn pick(&mut self, n: u64) -> u64 {
+            let next = self.0.wrapping_mul(6_364_136_223_846_793_005);
+            self.0 = next.wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 33) % n
+        }
+
+        fn one_of(&mut self, words: &[&str]) -> String {
+            words[self.pick(words.len() as u64) as usize].to_string()
+        }
+
+        fn sum(&mut self, depth: u64) -> String {
+            let mut text = self.operand(depth);
+            for _ in 0..self.pick(3) {
+                text += &self.one_of(&[" + ", "-", "*", " /", "**", "*-", "** - "]);
+                text += &self.operand(depth);
+            }
+            text
+        }
+
+        fn operand(&mut self, depth: u64) -> String {
+            let kinds = if depth == 0 { 3 } else { 8 };
+            let inner = |texts: &mut Self| texts.sum(depth - 1);
+            match self.pick(kinds) {
+                0 => self.one_of(&["1", "2.5", ".5E-3", "30D", "7.e2", "0", "1D"]),
+                1 => self.one_of(&["TIME", "PI", "dtor", "MODE"]),
+                2 => self.one_of(&["WM(3)", "DX(1, 2)", "VZ(1,2,3,4)", "varval(7)"]),
+                3 => format!("({} )", inner(self)),
+                4 => format!("-{}", self.operand(0)),
+                5 => {
+                    let (a, b) = (inner(self), inner(self));
+                    self.one_of(&["MOD", "sign", "ATAN2"]) + &format!("({a},{b})")
+                }
+                6 => self.one_of(&["SIN", "ABS", "sqrt "]) + &format!("({})", inner(self)),
+                _ => {
+                    let parts = [(); 4].map(|()| self.sum(depth - 1));
+                    let [a, b, c, d] = parts;
+                    format!("IF({a}: {b},{c}\n, {d})")
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn trees_of_shapes_are_those_of_the_grammar() {
+        let (mut texts, names) = (Texts(7), Arc::new(Names::of(Dialect::Function)));
+        for k in 0..3000 {
+            let text = texts.sum(k % 3);
+            let limits = Limits::NONE;
+            let words = check(&text, Dialect::Function, Profile::Adams, limits, &names);
+            let grammar = words
+                .ok()
+                .and_then(|w| by_grammar(&text, Dialect::Function, &w));
+            let found = parse(&text, Dialect::Function, Profile::Adams).ok();
+            let found = found.map(|tree| (tree.nodes, tree.spans));
+            assert_eq!(found, grammar, "{text}");
+            assert!(grammar.is_some(), "{text}");
+        }
+    }
 }

@@ -36,6 +36,11 @@ pub struct SpringDamper {
 }
 
 impl SpringDamper {
+    /// Returns whether it never acts.
+    fn is_idle(&self) -> bool {
+        self.stiffness == 0.0 && self.damping == 0.0 && self.preload == 0.0
+    }
+
     fn magnitude<S: Scalar>(&self, x: S, rate: S) -> S {
         S::constant(self.preload)
             - rate.scale(self.damping)
@@ -54,6 +59,9 @@ impl Law for SpringDamper {
         j: &MarkerState<S>,
         angle: impl Fn(Measure) -> S,
     ) -> Action<S> {
+        if self.is_idle() {
+            return Action::zero();
+        }
         if self.rotational {
             let z_J = j.R_GM.column(2);
             let rate = (i.w_GM - j.w_GM).dot(z_J);

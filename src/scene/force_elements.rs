@@ -79,9 +79,18 @@ impl Builder<'_> {
                 rotational: f.rotational,
                 action_only: f.action_only,
                 formula,
+                idle: self.is_zero(formula),
             };
             self.along(c, id, (f.i, f.j), !f.action_only, law);
         }
+    }
+
+    /// Returns whether a formula is the number zero, whatever the state.
+    fn is_zero(&self, formula: usize) -> bool {
+        // where there are errors no formula was made
+        let constant = self.scene.formulas.get(formula);
+        let constant = constant.and_then(|f| f.program.constant_outputs());
+        constant.is_some_and(|numbers| numbers == [0.0])
     }
 
     /// Makes an element between I and J that reacts on J's part.

@@ -72,6 +72,8 @@ macro_rules! force_laws {
                 action_only: bool,
                 /// index in the formulas
                 formula: usize,
+                /// whether the formula is the number zero
+                idle: bool,
             },
             /// VFORCE, VTORQUE, GFORCE
             Vector {
@@ -130,10 +132,12 @@ macro_rules! force_laws {
                 let j = self.j.map_or_else(MarkerState::ground, |j| at.marker(j));
                 let angle = |measure: Measure| at.angle_between(measure, self.i, self.j);
                 match &self.law {
+                    ForceLaw::Single { idle: true, .. } => Action::zero(),
                     ForceLaw::Single {
                         rotational,
                         action_only,
                         formula,
+                        idle: false,
                     } => {
                         let magnitude = at.formula(*formula);
                         action::single_force(*rotational, *action_only, &i, &j, magnitude)

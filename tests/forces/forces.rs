@@ -516,3 +516,61 @@ fn a_matrix_that_does_not_fit_is_told() {
         told.message
     );
 }
+
+#[test]
+fn forces_that_are_nothing_change_no_bit_and_are_read_as_zero() {
+    let spring = "SPRINGDAMPER/1, I=2, J=1, TRANSLATION, K=30, C=0.2, LENGTH=1\n";
+    let places = ["DX(2,1)", "DY(2,1)", "AZ(2,1)", "VX(2,1)", "WZ(2,1)"];
+    let bare = solve(
+        &format!("{PLANAR}{spring}"),
+        &places,
+        Analysis::Dynamic,
+        2.0,
+    );
+    for (idle, read) in [
+        (
+            "SPRINGDAMPER/2, I=2, J=1, TRANSLATION, K=0, C=0, LENGTH=1",
+            "SPDP(2,0,{},0)",
+        ),
+        (
+            "SPRINGDAMPER/2, I=2, J=1, ROTATION, KT=0, CT=0, ANGLE=1",
+            "SPDP(2,0,{},0)",
+        ),
+        (
+            "SFORCE/1, I=2, J=1, TRANSLATION, FUNCTION=0",
+            "SFORCE(1,0,{},0)",
+        ),
+        (
+            "SFORCE/1, I=2, J=1, TRANSLATION, ACTIONONLY, FUNCTION=2-2",
+            "SFORCE(1,0,{},0)",
+        ),
+        (
+            "SFORCE/1, I=2, J=1, ROTATION, FUNCTION=SIN(0)",
+            "SFORCE(1,0,{},0)",
+        ),
+    ] {
+        let actions: Vec<String> = (2..=8)
+            .filter(|k| *k != 5)
+            .map(|k| read.replace("{}", &k.to_string()))
+            .collect();
+        let columns: Vec<&str> = places
+            .into_iter()
+            .chain(actions.iter().map(String::as_str))
+            .collect();
+        let text = format!("{PLANAR}{spring}{idle}\n");
+        let with = solve(&text, &columns, Analysis::Dynamic, 2.0);
+        for place in places {
+            assert_eq!(
+                values(&with, place),
+                values(&bare, place),
+                "{idle}: {place}"
+            );
+        }
+        for action in &actions {
+            assert!(
+                values(&with, action).iter().all(|x| *x == 0.0),
+                "{idle}: {action}"
+            );
+        }
+    }
+}

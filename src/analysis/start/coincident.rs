@@ -72,6 +72,7 @@ fn along_a_line(force: &ForceElement, at: &Equations<'_, f64>) -> Option<(usize,
             rotational: false,
             action_only: false,
             formula,
+            ..
         } => at.formula(*formula),
         ForceLaw::SpringDamper(law) if !law.rotational => law.preload + law.stiffness * law.free,
         _ => return None,

@@ -128,6 +128,16 @@ pub(super) fn torques_have_an_axis(model: &Model, out: &mut Out) {
     if !is_fully_known(model) {
         return;
     }
+    let torques = model.active(ElementKind::Sforce, &model.sforces);
+    let torques = torques.filter(|(_, s)| s.rotational && !s.action_only);
+    let torques = torques.map(|(id, s)| (ElementKind::Sforce.id(id), &s.place, [s.i, s.j]));
+    let springs = model.active(ElementKind::SpringDamper, &model.spring_dampers);
+    let springs = springs.filter(|(_, s)| s.rotational);
+    let springs = springs.map(|(id, s)| (ElementKind::SpringDamper.id(id), &s.place, [s.i, s.j]));
+    let torques: Vec<_> = torques.chain(springs).collect();
+    if torques.is_empty() {
+        return;
+    }
     let (mut tied, mut turnless) = (BTreeSet::new(), BTreeMap::new());
     for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
         let holds = matches!(joint.kind, JointKind::Fixed | JointKind::Translational);
@@ -144,13 +154,7 @@ pub(super) fn torques_have_an_axis(model: &Model, out: &mut Out) {
             }
         }
     }
-    let torques = model.active(ElementKind::Sforce, &model.sforces);
-    let torques = torques.filter(|(_, s)| s.rotational && !s.action_only);
-    let torques = torques.map(|(id, s)| (ElementKind::Sforce.id(id), &s.place, [s.i, s.j]));
-    let springs = model.active(ElementKind::SpringDamper, &model.spring_dampers);
-    let springs = springs.filter(|(_, s)| s.rotational);
-    let springs = springs.map(|(id, s)| (ElementKind::SpringDamper.id(id), &s.place, [s.i, s.j]));
-    for (id, place, [i, j]) in torques.chain(springs) {
+    for (id, place, [i, j]) in torques {
         let (Some(a), Some(b)) = (model.body_of(i), model.body_of(j)) else {
             continue;
         };
