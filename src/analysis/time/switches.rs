@@ -65,6 +65,9 @@ const CLEAR_OF_ZERO: f64 = 4.0;
 /// Value on the other side at the beginning of a step, as a part of the largest control point, that
 /// is rounding of the switch there.
 const BEGINS_AT_ZERO: f64 = 1e-9;
+/// Distance from zero where a switch was to be, as a part of the way within the step, up to which
+/// it is not looked for once more.
+const EXACT_LANDING: f64 = 1e-9;
 /// Steps that are repeated because of one switch, at most.
 const MAX_REDONE: usize = 30;
 /// Halvings of one step because its interpolant has no value, at most.
@@ -424,11 +427,16 @@ impl Switches {
         if landed && self.next[k] != 0 {
             return true;
         }
-        let steepest = self.slope0[k].abs().max(self.slope1[k].abs());
+        let steepest = self.steepest(k);
         let least = self.g0[k].abs().min(self.g1[k].abs());
         let far = sign(self.g1[k]) == self.sides[k] && least > h * steepest;
         // a value that stays zero is on no side
         far || self.sides[k] == 0 && self.g1[k] == 0.0 && self.slope1[k] == 0.0
+    }
+
+    /// Returns the larger of the slopes of a switch at both ends of a step.
+    fn steepest(&self, k: usize) -> f64 {
+        self.slope0[k].abs().max(self.slope1[k].abs())
     }
 
     /// Returns whether all switches that may have come to zero within a step stay on their sides,
@@ -440,10 +448,12 @@ impl Switches {
         step: &Step,
         landed: bool,
     ) -> bool {
-        // where one has changed its side, there is no need to ask
-        let changed =
-            |k: usize| sign(self.g1[k]) != self.sides[k] && !self.is_far(k, step.h, landed);
-        if self.slide() || (0..self.sides.len()).any(changed) || !method.middle(&mut self.probe) {
+        // where one has changed its side, or came to zero elsewhere, there is no need to ask
+        let crossed = |k: usize| match landed && self.next[k] != 0 {
+            true => self.g1[k].abs() > EXACT_LANDING * step.h * self.steepest(k),
+            false => sign(self.g1[k]) != self.sides[k] && !self.is_far(k, step.h, landed),
+        };
+        if self.slide() || (0..self.sides.len()).any(crossed) || !method.middle(&mut self.probe) {
             return false;
         }
         let middle = 0.5 * (step.t0 + step.t1);
@@ -505,7 +515,7 @@ impl Switches {
     fn has_landed(&mut self, step: &Step) -> bool {
         let is_shortest = step.h <= 2.0 * SHORTEST_STEP * self.duration;
         for k in 0..self.next.len() {
-            let steepest = self.slope0[k].abs().max(self.slope1[k].abs());
+            let steepest = self.steepest(k);
             let on_the_way = LANDING_TOLERANCE * step.h * steepest;
             let zero = match is_shortest {
                 true => on_the_way.max(NO_DISTANCE * self.swings[k]),
