@@ -63,6 +63,16 @@ const ROUNDINGS: f64 = 50.0;
 const LEVELS: usize = 8;
 /// Size of one level as a part of that of the level above.
 const LEVEL: f64 = 0.25;
+/// Sizes below which an unknown is on each level but the first, as parts of its magnitude.
+const BOUNDS: [f64; LEVELS] = {
+    let mut bounds = [LEVEL; LEVELS];
+    let mut k = 1;
+    while k < LEVELS {
+        bounds[k] = LEVEL * bounds[k - 1];
+        k += 1;
+    }
+    bounds
+};
 /// Time after which a transient is forgotten, over the time during which it was large.
 const FORGETTING: f64 = 100.0;
 
@@ -71,7 +81,7 @@ const FORGETTING: f64 = 100.0;
 struct Course {
     /// time spent on each level, in s
     spent: [f64; LEVELS],
-    /// time when it was on each level, or above, last, in s
+    /// time when it was on each level last, in s
     last: [f64; LEVELS],
     /// level when seen last
     level: usize,
@@ -80,6 +90,7 @@ struct Course {
 impl Course {
     /// Takes note of a size at a time, `dt` after the one before, where the magnitude was `m`;
     /// returns the new one.
+    #[inline]
     fn see(&mut self, size: f64, mut m: f64, (t, dt): (f64, f64)) -> f64 {
         if size > m {
             let mut risen = m / LEVEL;
@@ -89,17 +100,12 @@ impl Course {
             }
             m = size;
         }
-        let mut bound = LEVEL * m;
-        let mut level = 0;
-        while level < LEVELS && size <= bound {
-            level += 1;
-            bound *= LEVEL;
-        }
+        let level = BOUNDS.iter().filter(|&&bound| size <= bound * m).count();
         let reached = level.min(self.level);
         self.level = level;
         if reached < LEVELS {
             self.spent[reached] += dt;
-            self.last[reached..].fill(t);
+            self.last[reached] = t;
         }
         while self.level > 0 && t - self.last[0] > FORGETTING * self.spent[0] {
             self.forget();
@@ -118,10 +124,11 @@ impl Course {
 
     /// Makes the magnitude smaller by a level.
     fn forget(&mut self) {
-        let above = self.spent[0];
+        let (spent, last) = (self.spent[0], self.last[0]);
         self.spent.copy_within(1.., 0);
         self.last.copy_within(1.., 0);
-        self.spent[0] += above;
+        self.spent[0] += spent;
+        self.last[0] = self.last[0].max(last);
         self.spent[LEVELS - 1] = 0.0;
         self.level -= 1;
     }

@@ -68,13 +68,12 @@ pub trait Ode {
     fn project(&mut self, _t: f64, _y: &mut [f64]) -> Result<bool, Failure> {
         Ok(false)
     }
-    /// Removes from the error estimate of a step that ends at `(t, y)` the part that projection
-    /// will remove; returns false if there is nothing to remove. Called only before a step is
-    /// rejected.
+    /// Removes from error estimates of a step that ends at `(t, y)` the parts that projection will
+    /// remove; returns false if there is nothing to remove. Called only before a step is rejected.
     ///
     /// Where invariants become dependent, rates normal to them are full of magnified rounding that
     /// never reaches the solution.
-    fn filter_error(&mut self, _t: f64, _y: &[f64], _error: &mut [f64]) -> bool {
+    fn filter_errors(&mut self, _t: f64, _y: &[f64], _errors: [&mut [f64]; 2]) -> bool {
         false
     }
     /// Returns a better length, in s, for a step that was attempted from `t` with length `h`, or
@@ -378,6 +377,11 @@ pub trait Method<P: ?Sized> {
     /// # Errors
     /// When a further evaluation that the interpolant needs fails.
     fn interpolate(&mut self, problem: &mut P, t: f64, y: &mut [f64]) -> Result<(), Failure>;
+    /// Finds the state in the middle of the last accepted step from what is known of it, without an
+    /// evaluation: less exact than interpolated. False: it is not known.
+    fn middle(&self, _y: &mut [f64]) -> bool {
+        false
+    }
     /// Differentiates the interpolant at `t` inside the last accepted step.
     ///
     /// # Errors

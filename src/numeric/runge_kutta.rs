@@ -14,7 +14,8 @@
 //! The error test (3) needs no rate at the new point. So the new point is projected first and its
 //! rate, which is `k₁` of the next step, is evaluated once on the invariants: projection costs no
 //! evaluation. The interpolant (4) is of order 7 and needs three more evaluations; they are made at
-//! the first interpolation inside a step.
+//! the first interpolation inside a step. Of order 6 is what the stages alone say of the middle of
+//! a step: the weights fulfil the conditions of all trees up to there, with the least squares.
 //!
 //! *Stiffness*: when `h |λ| ≈ h |k₁₃ − k₁₂| / |y₁ − Y₁₂|` lies beyond 6.1, the edge of the
 //! stability region, in most of the recent steps, stability holds the step down. [`Method::stiff`]
@@ -56,6 +57,16 @@ const B: [f64; 8] = [
 ];
 /// Stages between the first and the next with a weight b.
 const UNWEIGHTED_STAGES: usize = 4;
+/// cᵢ of the stages from there on.
+const WEIGHTED_AT: [f64; 7] = [
+    0.3333333333333333,
+    0.25,
+    0.3076923076923077,
+    0.6512820512820513,
+    0.6,
+    0.8571428571428571,
+    1.0,
+];
 /// `h |λ|` at the edge of the stability region.
 const STABILITY_EDGE: f64 = 6.1;
 /// Request below which steps are held shorter than the edge: there the errors that the fast modes
@@ -125,6 +136,9 @@ pub struct Dop853 {
     f1: Vec<f64>,
     /// argument of a stage; after the step, that of the twelfth   (n)
     stage: Vec<f64>,
+    /// arguments of the stages with a weight b after the first, where somebody integrates along
+    /// steps   (7 × n; else empty)
+    weighted: Vec<f64>,
     /// k₂ … k₁₂   (11 × n)
     k: [Vec<f64>; 11],
     /// changes of the length of the present step for [`Ode::place_step`]
@@ -214,6 +228,7 @@ impl Dop853 {
             y1: zeros(),
             f1: zeros(),
             stage: zeros(),
+            weighted: Vec::new(),
             k: std::array::from_fn(|_| zeros()),
             placed: 0,
             interpolant: Interpolant::new(n),
@@ -259,13 +274,22 @@ impl Dop853 {
         Ok(())
     }
 
-    /// Evaluates the stages (1) after the first.
+    /// Evaluates the stages (1) after the first; takes note of those with a weight where there is
+    /// room for them.
     fn evaluate_stages<P: Ode + ?Sized>(&mut self, problem: &mut P, h: f64) -> Result<(), Failure> {
         let mut evaluations = 0;
+        let mut weighted = std::mem::take(&mut self.weighted);
+        let mut places = weighted.chunks_exact_mut(self.y0.len().max(1));
         let evaluated = self.each_stage(h, |t, stage, k| {
             evaluations += 1;
+            if evaluations > UNWEIGHTED_STAGES
+                && let Some(place) = places.next()
+            {
+                place.copy_from_slice(stage);
+            }
             problem.rate(t, stage, k)
         });
+        self.weighted = weighted;
         self.stats.evaluations += evaluations;
         evaluated
     }
@@ -405,7 +429,7 @@ impl Dop853 {
             e3[i] = self.y1[i] - self.y0[i] - h * b_hat_slope(k1[i], k9[i], k12[i]);
         }
         let y1 = &self.y1[..n];
-        if !problem.filter_error(t1, y1, e5) || !problem.filter_error(t1, y1, e3) {
+        if !problem.filter_errors(t1, y1, [&mut *e5, &mut *e3]) {
             return f64::INFINITY;
         }
         let (magnitude, most) = (self.weights.magnitude(), self.weights.most());
@@ -605,6 +629,10 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
         self.within_step(problem, t, y)
     }
 
+    fn middle(&self, y: &mut [f64]) -> bool {
+        self.middle_of_step(y)
+    }
+
     fn interpolate_rate(
         &mut self,
         problem: &mut P,
@@ -638,16 +666,26 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
                 ydot: &self.f0,
             },
         );
-        let weights = [0.0; UNWEIGHTED_STAGES].iter().chain(&B[1..]);
-        let mut weights = weights.map(|b| b * h);
-        self.each_stage(h, |t, y, ydot| {
-            let weight = weights.next().unwrap_or(0.0);
-            if weight != 0.0 {
-                let node = Node { weight, t, y, ydot };
-                visit(problem, node);
-            }
-            Ok(())
-        })
+        let n = self.y0.len();
+        if self.weighted.is_empty() {
+            let mut weighted = Vec::with_capacity(WEIGHTED_AT.len() * n);
+            let mut stages = 0;
+            self.each_stage(h, |_, y, _| {
+                stages += 1;
+                if stages > UNWEIGHTED_STAGES {
+                    weighted.extend_from_slice(y);
+                }
+                Ok(())
+            })?;
+            self.weighted = weighted;
+        }
+        let rates = &self.k[UNWEIGHTED_STAGES..];
+        let stages = self.weighted.chunks_exact(n.max(1)).zip(rates);
+        for ((b, c), (y, ydot)) in B[1..].iter().zip(WEIGHTED_AT).zip(stages) {
+            let (weight, t) = (b * h, self.t0 + c * h);
+            visit(problem, Node { weight, t, y, ydot });
+        }
+        Ok(())
     }
 
     fn propose(&mut self, h: f64) {

@@ -65,6 +65,33 @@ fn methods_show_their_order_and_that_of_their_interpolant() {
     }
 }
 
+#[test]
+fn the_middle_of_a_step_is_known_to_order_six_without_an_evaluation() {
+    // how far it is from the exact one in the first step of a planet
+    let off = |h: f64| {
+        let options = Options {
+            tolerance: 1e6,
+            h_initial: Some(h),
+            h_max: h,
+            ..Options::default()
+        };
+        let mut problem = System::new(Kepler);
+        let mut method = ode_method::<System<Kepler>>("DOP853", 4, &options).expect("a method");
+        (method.start(&mut problem, 0.0, &Kepler::start())).expect("it can start");
+        let mut y = [0.0; 4];
+        assert!(!method.middle(&mut y), "no step has been taken");
+        let step = method.step(&mut problem, 2.0).expect("it can go on");
+        let evaluations = method.stats().evaluations;
+        assert!(method.middle(&mut y));
+        assert_eq!(method.stats().evaluations, evaluations);
+        let exact = Kepler::exact(step.t0 + 0.5 * step.h);
+        let distances = y.iter().zip(exact).map(|(a, b)| (a - b).abs());
+        distances.fold(0.0, f64::max)
+    };
+    let order = (off(0.04) / off(0.02)).log2() - 1.0;
+    assert!((order - 6.0).abs() < 0.5, "order {order}");
+}
+
 /// (true error, evaluations) of a run.
 type Trial = fn(&str, f64) -> (f64, usize);
 

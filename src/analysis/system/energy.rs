@@ -162,10 +162,15 @@ impl System {
     /// Runs the program at a state; the system stays where it is.
     fn run_energy(&mut self, t: f64, y: &[f64], vdot: &[f64]) -> Option<&[f64]> {
         let mut energy = self.energy.take()?;
-        energy.kept.copy_from_slice(&self.numbers);
-        self.set(t, y);
-        energy.row.put(&mut energy.inputs, &self.numbers, &[]);
-        self.numbers.copy_from_slice(&energy.kept);
+        if self.follows_from_state() {
+            energy.row.put(&mut energy.inputs, &self.numbers, &[]);
+            self.scene.layout.set_state(&mut energy.inputs, t, y);
+        } else {
+            energy.kept.copy_from_slice(&self.numbers);
+            self.set(t, y);
+            energy.row.put(&mut energy.inputs, &self.numbers, &[]);
+            self.numbers.copy_from_slice(&energy.kept);
+        }
         let more = &mut energy.inputs[energy.row.more()];
         if more.len() == vdot.len() {
             more.copy_from_slice(vdot);

@@ -71,9 +71,15 @@ impl System {
     #[inline]
     pub(in crate::analysis) fn set(&mut self, t: f64, y: &[f64]) {
         self.scene.layout.set_state(&mut self.numbers, t, y);
-        if !self.recorded.external.is_empty() || self.recorded.loops.is_some() {
+        if !self.follows_from_state() {
             self.fill(false);
         }
+    }
+
+    /// Returns whether there is nothing to fill in at an instant but time and state.
+    #[inline]
+    pub(super) fn follows_from_state(&self) -> bool {
+        self.recorded.external.is_empty() && self.recorded.loops.is_none()
     }
 
     /// Solves the loops at the present numbers, after some of them have been changed.

@@ -226,31 +226,34 @@ impl Ode for System {
         outcome
     }
 
-    fn filter_error(&mut self, t: f64, y: &[f64], error: &mut [f64]) -> bool {
+    fn filter_errors(&mut self, t: f64, y: &[f64], errors: [&mut [f64]; 2]) -> bool {
         let rows = &mut self.recorded.rows;
         let (true, Some(projection)) = (rows.were_weak, &mut rows.projection) else {
             return false;
         };
         // Δv(v) = −W Gᵀ (G W Gᵀ)⁻¹ (G v + ġ₀): its part linear in v takes away all that is normal
         // to the rows
-        let l = self.scene.layout;
+        let (l, mover) = (self.scene.layout, &self.mover);
         let n_v = l.n_v;
         let q = l.state(y).q;
-        let error = l.state_mut(error);
-        let tangent = self.mover.tangent(q, error.q, n_v);
-        let mut state = y.to_vec();
-        let mut normal = |v: &[f64], numbers: &mut [f64]| {
-            l.state_mut(&mut state).v.copy_from_slice(v);
-            l.set_state(numbers, t, &state);
-            l.change(projection.run(numbers)).v.to_vec()
+        l.set_state(&mut self.numbers, t, y);
+        let mut normal = |v: &[f64], out: &mut [f64]| {
+            self.numbers[l.v()].copy_from_slice(v);
+            out.copy_from_slice(l.change(projection.run(&self.numbers)).v);
         };
-        let none = normal(&vec![0.0; n_v], &mut self.numbers);
-        let of_q = normal(&tangent, &mut self.numbers);
-        let of_v = normal(error.v, &mut self.numbers);
-        let filtered: Vec<f64> = (0..n_v).map(|k| tangent[k] + of_q[k] - none[k]).collect();
-        self.mover.untangent(q, &filtered, error.q);
-        for k in 0..n_v {
-            error.v[k] += of_v[k] - none[k];
+        let mut tangent = vec![0.0; n_v];
+        let [mut none, mut change] = [tangent.clone(), tangent.clone()];
+        normal(&tangent, &mut none);
+        for error in errors {
+            let error = l.state_mut(error);
+            mover.find_tangent(q, error.q, &mut tangent);
+            normal(&tangent, &mut change);
+            let changes = change.iter().zip(&none);
+            (tangent.iter_mut().zip(changes)).for_each(|(v, (d, none))| *v = *v + d - none);
+            mover.untangent(q, &tangent, error.q);
+            normal(error.v, &mut change);
+            let changes = change.iter().zip(&none);
+            (error.v.iter_mut().zip(changes)).for_each(|(v, (d, none))| *v += d - none);
         }
         true
     }

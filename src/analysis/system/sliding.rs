@@ -268,7 +268,14 @@ impl Branches {
         if !self.can_hold() {
             return false;
         }
-        if !self.rates_of_branches(numbers) || !self.slopes_of_switches() {
+        if !self.rates_of_branches(numbers) {
+            return false;
+        }
+        // rates that a switch does not change do not say how much there is of its branches
+        let n = self.slides.base.len();
+        let mut changes = self.slides.changes.chunks_exact(n.max(1));
+        let is_alike = changes.any(|change| change.iter().all(|d| *d == 0.0));
+        if is_alike || !self.slopes_of_switches() {
             return false;
         }
         let s = &mut self.slides;

@@ -19,7 +19,7 @@ use crate::numeric::quadrature::GAUSS_KRONROD_15;
 use crate::numeric::{Method, Step};
 
 /// Looks at the balance during a simulation, at most about.
-const LOOKS: f64 = 200.0;
+const LOOKS: f64 = 64.0;
 /// Turn of a driven mechanism, rad, and part of the duration, in which works are integrated at
 /// once.
 const PIECE: [f64; 2] = [1.0, 1.0 / 32.0];

@@ -14,6 +14,10 @@
 //! |g| > h max |ġ|   at both ends        so that g cannot have come to zero
 //! ```
 //!
+//! Of the others many are seen to stay on their side by what the method knows of the middle of the
+//! step: where the cubic through both ends leads through the value there, it stands for g, and its
+//! control points say on which side it is.
+//!
 //! Where both branches of a function lead back to where it changes (dry friction by SIGN, at rest),
 //! the motion stays there: the switch *slides*, see `system/sliding.rs`. While it does, its value
 //! is how far the mean of the branches is from either of them; the motion goes on along one when
@@ -52,6 +56,18 @@ const NO_DISTANCE: f64 = 1e-6;
 /// run: at time 0 there is always a shorter one, and a function whose branches are noise would lead
 /// there.
 const SHORTEST_STEP: f64 = 1e-13;
+/// Distance of a value in the middle of a step from the cubic through its ends, as a part of the
+/// span of the control points of that, up to which the cubic stands for the values between.
+const CUBIC_TOLERANCE: f64 = 0.05;
+/// Distance from zero of the control points behind the beginning, over the same distance: three
+/// times what a course of order four could need.
+const CLEAR_OF_ZERO: f64 = 4.0;
+/// Value on the other side at the beginning of a step, as a part of the largest control point, that
+/// is rounding of the switch there.
+const BEGINS_AT_ZERO: f64 = 1e-9;
+/// Distance from zero where a switch was to be, as a part of the way within the step, up to which
+/// it is not looked for once more.
+const EXACT_LANDING: f64 = 1e-9;
 /// Steps that are repeated because of one switch, at most.
 const MAX_REDONE: usize = 30;
 /// Halvings of one step because its interpolant has no value, at most.
@@ -111,6 +127,8 @@ pub struct Switches {
     slope0: Vec<f64>,
     g1: Vec<f64>,
     slope1: Vec<f64>,
+    /// values in the middle of a step   (n)
+    middle: Vec<f64>,
     /// a state nearby   (size of the system)
     probe: Vec<f64>,
     /// where the step under way is to end
@@ -143,6 +161,7 @@ impl Switches {
             slope0: vec![0.0; n],
             g1: vec![0.0; n],
             slope1: vec![0.0; n],
+            middle: vec![0.0; n],
             probe: vec![0.0; size],
             landing: None,
             swings: vec![0.0; n],
@@ -355,7 +374,7 @@ impl Switches {
         let (y, ydot) = (method.y(), method.ydot());
         self.slopes(system, step.t1, y, ydot, 1e-4 * step.h);
         let landed = landed && self.has_landed(step);
-        if !self.is_near(step.h, landed) {
+        if !self.is_near(step.h, landed) || self.is_clear(system, method, step, landed) {
             if landed {
                 return Verdict::Switched;
             }
@@ -400,16 +419,52 @@ impl Switches {
     /// Returns whether a switch may have come to zero within a step; those at which it `landed`
     /// have.
     fn is_near(&self, h: f64, landed: bool) -> bool {
-        (0..self.sides.len()).any(|k| {
-            if landed && self.next[k] != 0 {
-                return false;
-            }
-            let steepest = self.slope0[k].abs().max(self.slope1[k].abs());
-            let least = self.g0[k].abs().min(self.g1[k].abs());
-            let far = sign(self.g1[k]) == self.sides[k] && least > h * steepest;
-            // a value that stays zero is on no side
-            !(far || self.sides[k] == 0 && self.g1[k] == 0.0 && self.slope1[k] == 0.0)
-        })
+        (0..self.sides.len()).any(|k| !self.is_far(k, h, landed))
+    }
+
+    /// Returns whether a switch cannot have come to zero within a step, or has where it `landed`.
+    fn is_far(&self, k: usize, h: f64, landed: bool) -> bool {
+        if landed && self.next[k] != 0 {
+            return true;
+        }
+        let steepest = self.steepest(k);
+        let least = self.g0[k].abs().min(self.g1[k].abs());
+        let far = sign(self.g1[k]) == self.sides[k] && least > h * steepest;
+        // a value that stays zero is on no side
+        far || self.sides[k] == 0 && self.g1[k] == 0.0 && self.slope1[k] == 0.0
+    }
+
+    /// Returns the larger of the slopes of a switch at both ends of a step.
+    fn steepest(&self, k: usize) -> f64 {
+        self.slope0[k].abs().max(self.slope1[k].abs())
+    }
+
+    /// Returns whether all switches that may have come to zero within a step stay on their sides,
+    /// as far as their values in its middle tell.
+    fn is_clear(
+        &mut self,
+        system: &mut System,
+        method: &dyn Method<System>,
+        step: &Step,
+        landed: bool,
+    ) -> bool {
+        // where one has changed its side, or came to zero elsewhere, there is no need to ask
+        let crossed = |k: usize| match landed && self.next[k] != 0 {
+            true => self.g1[k].abs() > EXACT_LANDING * step.h * self.steepest(k),
+            false => sign(self.g1[k]) != self.sides[k] && !self.is_far(k, step.h, landed),
+        };
+        if self.slide() || (0..self.sides.len()).any(crossed) || !method.middle(&mut self.probe) {
+            return false;
+        }
+        let middle = 0.5 * (step.t0 + step.t1);
+        system.switches(middle, &self.probe, &mut self.middle);
+        let stays = |k: usize| {
+            let side = f64::from(self.sides[k]);
+            let values = [&self.g0, &self.middle, &self.g1].map(|g| side * g[k]);
+            let slopes = [&self.slope0, &self.slope1].map(|slope| side * slope[k]);
+            stays_positive(values, slopes.map(|slope| step.h * slope))
+        };
+        (0..self.sides.len()).all(|k| self.is_far(k, step.h, landed) || stays(k))
     }
 
     /// Finds the first switch within a step on its interpolant.
@@ -460,7 +515,7 @@ impl Switches {
     fn has_landed(&mut self, step: &Step) -> bool {
         let is_shortest = step.h <= 2.0 * SHORTEST_STEP * self.duration;
         for k in 0..self.next.len() {
-            let steepest = self.slope0[k].abs().max(self.slope1[k].abs());
+            let steepest = self.steepest(k);
             let on_the_way = LANDING_TOLERANCE * step.h * steepest;
             let zero = match is_shortest {
                 true => on_the_way.max(NO_DISTANCE * self.swings[k]),
@@ -483,9 +538,50 @@ impl Switches {
     }
 }
 
+/// Returns whether a function stays positive within a step, by its values where that begins, in
+/// its middle and where it ends, and its slopes, per step, at both ends: the cubic through these
+/// leads through the middle, and is clear of zero.
+///
+/// ```text
+/// g = Σ (3 over i) bᵢ xⁱ (1 − x)³⁻ⁱ + 16 d x² (1 − x)²        d: the distance in the middle
+/// ```
+fn stays_positive([b0, middle, b3]: [f64; 3], slopes: [f64; 2]) -> bool {
+    let (b1, b2) = (b0 + slopes[0] / 3.0, b3 - slopes[1] / 3.0);
+    let all = [b0, b1, b2, b3];
+    let least = all.into_iter().fold(f64::INFINITY, f64::min);
+    let largest = all.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let off = (middle - 0.125 * (b0 + 3.0 * (b1 + b2) + b3)).abs();
+    off <= CUBIC_TOLERANCE * (largest - least)
+        && b1.min(b2).min(b3) > CLEAR_OF_ZERO * off
+        && b0 >= -BEGINS_AT_ZERO * largest
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_said_to_stay_positive_does() {
+        // courses of a step: a line, bent, with up to a whole swing
+        let spread = |k: i32, of: f64| (f64::from(k) * of.sqrt()).fract() * 2.0 - 1.0;
+        let mut stayed = 0;
+        for k in 0..20_000 {
+            let [a, b, c, d, w, phase] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0].map(|of| spread(k, of));
+            let w = std::f64::consts::PI * (1.0 + w);
+            let begins = f64::from(k % 3) * a.abs();
+            let course = |x: f64| b * x + c * x * x + d * (w * x + 4.0 * phase).sin();
+            let slope = |x: f64| b + 2.0 * c * x + d * w * (w * x + 4.0 * phase).cos();
+            // every third begins at zero
+            let g = |x: f64| begins + course(x) - course(0.0);
+            if !stays_positive([0.0, 0.5, 1.0].map(g), [0.0, 1.0].map(slope)) {
+                continue;
+            }
+            stayed += 1;
+            let crosses = (1..1000).any(|i| g(f64::from(i) * 1e-3) <= 0.0);
+            assert!(!crosses, "{begins} {b} {c} {d} {w} {phase}");
+        }
+        assert!(stayed > 4000, "{stayed}");
+    }
 
     /// Returns whether a run has no end in which event n is at `time(n)`.
     fn without_end(time: impl Fn(f64) -> f64, n: u32, end: f64) -> bool {

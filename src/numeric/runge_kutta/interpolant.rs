@@ -83,14 +83,32 @@ impl Dop853 {
         }
         let s = (t - self.t0) / self.h;
         let c = 1.0 - s;
+        let n = y.len();
+        let y0 = &self.y0[..n];
         let [r1, r2, r3, r4, r5, r6, r7] = &self.interpolant.r;
-        for i in 0..y.len() {
-            y[i] = self.y0[i]
+        let (r1, r2, r3, r4) = (&r1[..n], &r2[..n], &r3[..n], &r4[..n]);
+        let (r5, r6, r7) = (&r5[..n], &r6[..n], &r7[..n]);
+        for i in 0..n {
+            y[i] = y0[i]
                 + s * (r1[i]
                     + c * (r2[i]
                         + s * (r3[i] + c * (r4[i] + s * (r5[i] + c * (r6[i] + s * r7[i]))))));
         }
         Ok(())
+    }
+
+    /// Computes the solution in the middle of the last step to order 6, from its stages alone;
+    /// false where there is none, or where fast modes spoil it.
+    pub(super) fn middle_of_step(&self, y: &mut [f64]) -> bool {
+        if !self.advanced || self.h_lambda > CHECKED_EDGE {
+            return false;
+        }
+        let (y0, h, k1, k13) = (&self.y0, self.h, &self.f0, &self.f1);
+        let [_, _, _, _, k6, k7, k8, k9, k10, k11, k12] = &self.k;
+        row!(y = y0 + h * (k1 0.0725403300432803, k6 -0.1087899077407418, k7 0.4478016201061576, k8 -0.0136093412232683,
+            k9 -0.1193377777214717, k10 0.2308255626314797, k11 -0.0151066184310830, k12 -0.0186294232198731,
+            k13 0.0243055555555200));
+        true
     }
 
     /// Computes the rate at a time inside the last step.
@@ -129,9 +147,11 @@ impl Dop853 {
         }
         let (h, n) = (t - self.t0, self.y0.len());
         self.interpolant.k.iter_mut().for_each(|k| k.resize(n, 0.0));
+        let weighted = std::mem::take(&mut self.weighted);
         std::mem::swap(&mut self.k, &mut self.interpolant.k);
         let evaluated = self.evaluate_stages(problem, h);
         std::mem::swap(&mut self.k, &mut self.interpolant.k);
+        self.weighted = weighted;
         evaluated?;
         let [_, _, _, _, k6, k7, k8, k9, k10, k11, k12] = &self.interpolant.k;
         for i in 0..n {

@@ -15,6 +15,8 @@ use crate::analysis::start::assemble::DEPENDENT;
 
 /// Number of columns from which on reflections of sparse rows are faster.
 const MANY_COLUMNS: usize = 150;
+/// Number of columns up to which the least that rows determine is found row by row in place.
+const FEW_COLUMNS: usize = 12;
 /// Entry of a row, whose length is near one, that is dropped: far below [`DEPENDENT`].
 const NEGLIGIBLE: f64 = 1e-14;
 
@@ -57,10 +59,47 @@ impl Rows {
 
 /// Returns the least that any of some rows determines beyond the others: zero where they are
 /// dependent.
-pub(super) fn margin(rows: Rows) -> f64 {
+pub(super) fn margin(mut rows: Rows) -> f64 {
     let n = rows.iter().len();
+    if rows.n_columns <= FEW_COLUMNS {
+        return margin_of_few(&mut rows);
+    }
     let (chosen, least) = select(rows, |_| false, n);
     if chosen.len() < n { 0.0 } else { least }
+}
+
+/// The same for few columns: chosen rows are put before the others, and zeros are not looked for.
+fn margin_of_few(rows: &mut Rows) -> f64 {
+    let n = rows.n_columns;
+    let mut unit = [0.0; FEW_COLUMNS];
+    let unit = &mut unit[..n];
+    let mut open: &mut [f64] = &mut rows.values;
+    let mut least = f64::INFINITY;
+    while !open.is_empty() {
+        // of rows as long as each other the last
+        let (mut pivot, mut length) = (0, f64::NEG_INFINITY);
+        for (k, row) in open.chunks_exact(n).enumerate() {
+            let size = norm(row);
+            if size.is_nan() {
+                return 0.0;
+            }
+            if size >= length {
+                (pivot, length) = (k, size);
+            }
+        }
+        if length < DEPENDENT {
+            return 0.0;
+        }
+        least = least.min(length);
+        let chosen = open[pivot * n..][..n].iter();
+        (unit.iter_mut().zip(chosen)).for_each(|(u, x)| *u = x / length);
+        open.copy_within(..pivot * n, n);
+        open = &mut open[n..];
+        for row in open.chunks_exact_mut(n) {
+            take_away_along(row, unit);
+        }
+    }
+    least
 }
 
 /// Chooses rows, the preferred ones unless another determines three times as much; the chosen ones,
@@ -334,6 +373,28 @@ mod tests {
                 assert_eq!(by_differences.0, by_reflections.0, "{n}");
                 let (a, b) = (by_differences.1, by_reflections.1);
                 assert!((a - b).abs() < 1e-11 * a, "{n}: {a} {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_margin_of_few_columns_is_that_of_the_choice() {
+        for n in 0..=FEW_COLUMNS {
+            for n_rows in 0..=n + 1 {
+                let mut rows = Rows::zeros(n_rows, n);
+                let numbers = (0..).map(|k: u32| f64::from(k * k).sin());
+                // every other row with zeros, two alike
+                let zeroed = numbers.map(|x| if x.abs() < 0.3 { 0.0 } else { x });
+                (rows.values.iter_mut().zip(zeroed)).for_each(|(x, new)| *x = new);
+                if n_rows > 2 && n > 0 {
+                    let first = rows.row(0).to_vec();
+                    rows.row_mut(2).copy_from_slice(&first);
+                    rows.row_mut(2)[n - 1] *= 0.5;
+                }
+                let (chosen, least) = select(rows.clone(), |_| false, n_rows);
+                let n_rows = rows.iter().len();
+                let expected = if chosen.len() < n_rows { 0.0 } else { least };
+                assert_eq!(margin(rows).to_bits(), expected.to_bits(), "{n} {n_rows}");
             }
         }
     }
