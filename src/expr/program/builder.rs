@@ -412,6 +412,7 @@ impl Builder {
 
     /// Returns base and `n ≥ 1` of a product that is `xⁿ √x`. At x = 0 the root has no finite
     /// derivative, the product has.
+    #[inline]
     pub(super) fn half_power(&self, node: &Node) -> Option<(Value, i32)> {
         let Node::Binary(BinaryOp::Mul, a, b) = *node else {
             return None;
@@ -658,6 +659,7 @@ impl Builder {
     }
 
     /// Calls `f` with every operand of a node, in order.
+    #[inline]
     pub(super) fn operands(&self, node: &Node, mut f: impl FnMut(Value)) {
         match *node {
             Node::Constant(_) | Node::Input(_) => {}
