@@ -23,7 +23,7 @@ pub(super) enum Item {
     End(Value, u8),
 }
 
-/// What each node reads when it is computed, node after node.
+/// The nodes that each node reads when it is computed, node after node.
 #[derive(Debug)]
 struct Reads {
     /// the last of each node and those of the nodes before it

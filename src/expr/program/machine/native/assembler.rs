@@ -67,6 +67,9 @@ const RSI: u8 = 6;
 const RBX: u8 = 3;
 const RDI: u8 = 7;
 
+/// Length of the code of a step, about.
+const BYTES_PER_STEP: usize = 20;
+
 /// A jump whose distance is not known yet: the place of the distance in the code.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Jump(usize);
@@ -79,9 +82,9 @@ pub(super) struct Assembler {
 }
 
 impl Assembler {
-    /// Begins a function that is given the frame and the inputs.
-    pub(super) fn new(calls: bool) -> Self {
-        let mut code = Vec::new();
+    /// Begins a function of so many steps that is given the frame and the inputs.
+    pub(super) fn new(calls: bool, n_steps: usize) -> Self {
+        let mut code = Vec::with_capacity(BYTES_PER_STEP * n_steps);
         if calls {
             // push rbx (that aligns the stack); rbx = rdi
             code.extend([0x53, 0x48, 0x89, 0xFB]);

@@ -36,6 +36,8 @@ struct Held {
 struct Translation<'a> {
     assembler: Assembler,
     held: [Option<Held>; N_HOLDING],
+    /// registers that hold nothing, a bit each
+    free: u16,
     /// by slot: the register
     places: Vec<u8>,
     /// registers that the step at hand still needs
@@ -95,8 +97,9 @@ pub(super) fn translate(steps: &Steps, core: &Core, calls: &HashMap<u32, Call>) 
     let is_target = steps.jumped_to();
     let needs = needs(steps, core, &is_target);
     let mut translation = Translation {
-        assembler: Assembler::new(steps.steps.iter().any(is_call)),
+        assembler: Assembler::new(steps.steps.iter().any(is_call), steps.steps.len()),
         held: [None; N_HOLDING],
+        free: (1 << N_HOLDING) - 1,
         places: vec![NOWHERE; steps.n_slots()],
         pinned: 0,
         jumps: HashMap::default(),
@@ -392,8 +395,8 @@ impl Translation<'_> {
 
     /// Takes a free register, if need be one whose value is needed late.
     fn take(&mut self) -> Xmm {
-        let free = (0..N_HOLDING as u8)
-            .find(|&x| self.held[x as usize].is_none() && self.pinned & 1 << x == 0);
+        let free = self.free & !self.pinned;
+        let free = (free != 0).then(|| free.trailing_zeros() as Xmm);
         let x = free.unwrap_or_else(|| {
             let next = |x: &u8| self.held[*x as usize].map(|held| held.next);
             let x = (0..N_HOLDING as u8)
@@ -418,6 +421,7 @@ impl Translation<'_> {
             return;
         }
         self.places[slot as usize] = x;
+        self.free &= !(1 << x);
         self.held[x as usize] = Some(Held {
             slot,
             is_stored: false,
@@ -447,6 +451,7 @@ impl Translation<'_> {
     fn release(&mut self, x: Xmm) {
         if let Some(held) = self.held[x as usize].take() {
             self.places[held.slot as usize] = NOWHERE;
+            self.free |= 1 << x;
         }
     }
 
@@ -461,14 +466,18 @@ impl Translation<'_> {
     }
 
     fn store_all(&mut self) {
-        for x in 0..N_HOLDING as u8 {
-            self.store(x);
+        let mut left = !self.free & ((1 << N_HOLDING) - 1);
+        while left != 0 {
+            self.store(left.trailing_zeros() as Xmm);
+            left &= left - 1;
         }
     }
 
     fn forget(&mut self) {
-        for x in 0..N_HOLDING as u8 {
-            self.release(x);
+        let mut left = !self.free & ((1 << N_HOLDING) - 1);
+        while left != 0 {
+            self.release(left.trailing_zeros() as Xmm);
+            left &= left - 1;
         }
     }
 }
