@@ -18,6 +18,7 @@ use crate::scene::configuration::Configured;
 use crate::scene::equations::{Equations, Unsupported};
 use crate::scene::layout::Layout;
 use crate::scene::programs::record_with_complaints;
+use crate::scene::recorder::Recorder;
 use std::collections::BTreeMap;
 
 /// A column as it is evaluated.
@@ -390,6 +391,22 @@ impl Columns {
         }
     }
 
+    /// The columns as a program of an instant of which more is recorded, and what could not be
+    /// supplied; bodies begin at these numbers, should the run begin there.
+    pub(super) fn program_beside(
+        &mut self,
+        recorder: &Recorder<'_, '_>,
+        numbers: &[f64],
+    ) -> (Program, Vec<Unsupported>) {
+        let begun = !self.origins.is_empty();
+        self.begin(recorder.scene(), numbers);
+        let values = self.values(recorder.scene(), recorder.at());
+        if !begun {
+            self.origins.clear();
+        }
+        recorder.program_with_complaints(&values)
+    }
+
     /// Returns whether a column, time being 0, belongs to an element that is switched off and has
     /// nothing to show then.
     pub fn are_off(&self, column: usize, model: &Model) -> bool {
@@ -406,16 +423,19 @@ impl Columns {
 
     /// The columns as a program of the scene, and what could not be supplied.
     pub fn program(&self, scene: Configured<'_>) -> (Program, Vec<Unsupported>) {
-        record_with_complaints(scene, |at| {
-            let mut values = Values::new(&scene, at, &self.origins);
-            let is_off = |id: ElementId| scene.inactive.contains(&id);
-            (self.shown.iter())
-                .map(|shown| match shown.request {
-                    Some(id) if is_off(id) => Scalar::constant(f64::NAN),
-                    _ => values.value(&shown.what),
-                })
-                .collect()
-        })
+        record_with_complaints(scene, |at| self.values(scene, at))
+    }
+
+    /// Values of the columns at an instant of the scene.
+    fn values<'s, S: Scalar>(&self, scene: Configured<'s>, at: &Equations<'s, S>) -> Vec<S> {
+        let mut values = Values::new(&scene, at, &self.origins);
+        let is_off = |id: ElementId| scene.inactive.contains(&id);
+        (self.shown.iter())
+            .map(|shown| match shown.request {
+                Some(id) if is_off(id) => Scalar::constant(f64::NAN),
+                _ => values.value(&shown.what),
+            })
+            .collect()
     }
 
     /// Adds an expression after all other columns, shown by tables.
