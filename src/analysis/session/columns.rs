@@ -559,3 +559,48 @@ pub fn name_of(place: &Place, id: ElementId) -> String {
     let name = place.name.clone();
     name.unwrap_or_else(|| format!("{}_{}", id.kind, id.number))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Analysis, Session};
+    use super::*;
+    use crate::analysis::watch::Unwatched;
+    use crate::dataset::manual;
+
+    #[test]
+    fn columns_beside_the_rates_are_those_recorded_alone_to_the_bit() {
+        let mut n_compared = 0;
+        for model in manual::examples() {
+            let options = Options {
+                full: true,
+                ..Options::default()
+            };
+            let Ok(read) = Model::from_text(model.dataset) else {
+                continue;
+            };
+            let mut session = Session::new(read, "columns", options);
+            let Ok((system, ..)) = session.begin(Analysis::Dynamic, &mut Unwatched) else {
+                continue;
+            };
+            let (beside, lacks) = session.columns_at_start.take().unwrap();
+            let here = system.configured();
+            session.columns.begin(here, &system.numbers);
+            let (alone, others) = session.columns.program(here);
+            assert_eq!(lacks, others, "{}", model.name);
+            for k in 0..20 {
+                let moved = |(j, x): (usize, &f64)| x + 0.01 * f64::from(k) * (j as f64).sin();
+                let numbers: Vec<f64> = system.numbers.iter().enumerate().map(moved).collect();
+                let bits = |program: &Program| -> Vec<u64> {
+                    let mut out = vec![0.0; program.n_outputs()];
+                    program.run(&numbers, &mut Work::default(), &mut out);
+                    // as in results: numbers that are none and zeros have no sign
+                    let plain = |x: &f64| if x.is_nan() { f64::NAN } else { x + 0.0 };
+                    out.iter().map(|x| plain(x).to_bits()).collect()
+                };
+                assert_eq!(bits(&beside), bits(&alone), "{} {k}", model.name);
+            }
+            n_compared += session.columns.len();
+        }
+        assert!(n_compared > 300, "{n_compared}");
+    }
+}
