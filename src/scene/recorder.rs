@@ -75,6 +75,17 @@ impl<'s, 'b> Recorder<'s, 'b> {
         })
     }
 
+    /// As [`Recorder::program`]; what could not be computed is NaN in the program, and told.
+    pub(crate) fn program_with_complaints(
+        &self,
+        values: &[Sym<'b>],
+    ) -> (Program, Vec<Unsupported>) {
+        let builder = &mut *self.builder.borrow_mut();
+        let values: Vec<Value> = values.iter().map(|s| s.value(builder)).collect();
+        let program = builder.finish_with_inputs(&values, &self.scene.layout.inputs());
+        (program, self.at.complaints())
+    }
+
     /// Returns how many operations the program of some values takes, without making it.
     ///
     /// # Errors

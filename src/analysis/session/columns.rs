@@ -18,6 +18,7 @@ use crate::scene::configuration::Configured;
 use crate::scene::equations::{Equations, Unsupported};
 use crate::scene::layout::Layout;
 use crate::scene::programs::record_with_complaints;
+use crate::scene::recorder::Recorder;
 use std::collections::BTreeMap;
 
 /// A column as it is evaluated.
@@ -390,6 +391,22 @@ impl Columns {
         }
     }
 
+    /// The columns as a program of an instant of which more is recorded, and what could not be
+    /// supplied; bodies begin at these numbers, should the run begin there.
+    pub(super) fn program_beside(
+        &mut self,
+        recorder: &Recorder<'_, '_>,
+        numbers: &[f64],
+    ) -> (Program, Vec<Unsupported>) {
+        let begun = !self.origins.is_empty();
+        self.begin(recorder.scene(), numbers);
+        let values = self.values(recorder.scene(), recorder.at());
+        if !begun {
+            self.origins.clear();
+        }
+        recorder.program_with_complaints(&values)
+    }
+
     /// Returns whether a column, time being 0, belongs to an element that is switched off and has
     /// nothing to show then.
     pub fn are_off(&self, column: usize, model: &Model) -> bool {
@@ -406,16 +423,19 @@ impl Columns {
 
     /// The columns as a program of the scene, and what could not be supplied.
     pub fn program(&self, scene: Configured<'_>) -> (Program, Vec<Unsupported>) {
-        record_with_complaints(scene, |at| {
-            let mut values = Values::new(&scene, at, &self.origins);
-            let is_off = |id: ElementId| scene.inactive.contains(&id);
-            (self.shown.iter())
-                .map(|shown| match shown.request {
-                    Some(id) if is_off(id) => Scalar::constant(f64::NAN),
-                    _ => values.value(&shown.what),
-                })
-                .collect()
-        })
+        record_with_complaints(scene, |at| self.values(scene, at))
+    }
+
+    /// Values of the columns at an instant of the scene.
+    fn values<'s, S: Scalar>(&self, scene: Configured<'s>, at: &Equations<'s, S>) -> Vec<S> {
+        let mut values = Values::new(&scene, at, &self.origins);
+        let is_off = |id: ElementId| scene.inactive.contains(&id);
+        (self.shown.iter())
+            .map(|shown| match shown.request {
+                Some(id) if is_off(id) => Scalar::constant(f64::NAN),
+                _ => values.value(&shown.what),
+            })
+            .collect()
     }
 
     /// Adds an expression after all other columns, shown by tables.
@@ -538,4 +558,49 @@ pub fn append_means<'a>(
 pub fn name_of(place: &Place, id: ElementId) -> String {
     let name = place.name.clone();
     name.unwrap_or_else(|| format!("{}_{}", id.kind, id.number))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Analysis, Session};
+    use super::*;
+    use crate::analysis::watch::Unwatched;
+    use crate::dataset::manual;
+
+    #[test]
+    fn columns_beside_the_rates_are_those_recorded_alone_to_the_bit() {
+        let mut n_compared = 0;
+        for model in manual::examples() {
+            let options = Options {
+                full: true,
+                ..Options::default()
+            };
+            let Ok(read) = Model::from_text(model.dataset) else {
+                continue;
+            };
+            let mut session = Session::new(read, "columns", options);
+            let Ok((system, ..)) = session.begin(Analysis::Dynamic, &mut Unwatched) else {
+                continue;
+            };
+            let (beside, lacks) = session.columns_at_start.take().unwrap();
+            let here = system.configured();
+            session.columns.begin(here, &system.numbers);
+            let (alone, others) = session.columns.program(here);
+            assert_eq!(lacks, others, "{}", model.name);
+            for k in 0..20 {
+                let moved = |(j, x): (usize, &f64)| x + 0.01 * f64::from(k) * (j as f64).sin();
+                let numbers: Vec<f64> = system.numbers.iter().enumerate().map(moved).collect();
+                let bits = |program: &Program| -> Vec<u64> {
+                    let mut out = vec![0.0; program.n_outputs()];
+                    program.run(&numbers, &mut Work::default(), &mut out);
+                    // as in results: numbers that are none and zeros have no sign
+                    let plain = |x: &f64| if x.is_nan() { f64::NAN } else { x + 0.0 };
+                    out.iter().map(|x| plain(x).to_bits()).collect()
+                };
+                assert_eq!(bits(&beside), bits(&alone), "{} {k}", model.name);
+            }
+            n_compared += session.columns.len();
+        }
+        assert!(n_compared > 300, "{n_compared}");
+    }
 }

@@ -183,11 +183,10 @@ impl Session {
 
     /// Returns the system of the simulation before, or of the start, where it can be gone on with.
     pub(super) fn before(&mut self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
-        self.kept_model = None;
+        (self.kept_model, self.columns_at_start) = (None, None);
         if let Some(again) = self.again(mode, inputs) {
             return Some(again);
         }
-        self.columns_at_start = None;
         let (system, assembly) = self.rewound(mode, inputs)?;
         let kept = self.starts.systems.get(&mode);
         self.columns_at_start = kept.and_then(|kept| kept.columns.clone());

@@ -140,8 +140,8 @@ pub struct Session {
     kept_model: Option<Arc<Model>>,
     /// program of the columns of the present scene
     columns_program: Option<Program>,
-    /// the program of the columns that belongs to the kept start which the session has gone back
-    /// to, and the numbers that it lacks
+    /// the program of the columns that was recorded with the system of the present start, or that
+    /// belongs to the kept start which the session has gone back to; and the numbers that it lacks
     columns_at_start: Option<(Program, Vec<Unsupported>)>,
     hooks: Vec<closures::Hook>,
     /// linear systems that commands asked for: name of their file where one was given, and whether

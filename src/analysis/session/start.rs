@@ -319,6 +319,8 @@ impl Session {
     }
 
     /// Records the programs and puts the system into its state, with past, samples and sensors.
+    /// Columns, which a simulation shows, read much of what the rates read, and are recorded with
+    /// them.
     fn system(
         &mut self,
         start: Start,
@@ -330,11 +332,17 @@ impl Session {
         y.extend(v);
         y.extend(start.x);
         let hooks = self.hooks.clone();
-        let mut system = self.looking(SetUp::Velocities, watch, |_, look| {
-            System::recorded_while(start.scene, start.configuration, &hooks, look)
-        })?;
-        self.put(&mut system, (t, &y), mode)?;
-        Ok(system)
+        self.looking(SetUp::Velocities, watch, |session, look| {
+            let (scene, configuration) = (start.scene, start.configuration);
+            System::recorded_while(scene, configuration, &hooks, look, |system, recorder| {
+                session.put(system, (t, &y), mode)?;
+                if mode != LINEAR && !session.columns.is_empty() {
+                    let columns = session.columns.program_beside(recorder, &system.numbers);
+                    session.columns_at_start = Some(columns);
+                }
+                Ok(())
+            })
+        })
     }
 
     /// Returns what a system that goes on does to the parts as the last simulation left them.

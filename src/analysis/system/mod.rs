@@ -52,6 +52,7 @@ use crate::scene::configuration::{Configuration, Configured, Elimination};
 use crate::scene::equations::Unsupported;
 use crate::scene::layout::Layout;
 use crate::scene::mover::Mover;
+use crate::scene::recorder::Recorder;
 use branches::Branches;
 use closures::Hook;
 use recorded::Recorded;
@@ -116,41 +117,48 @@ impl System {
             configuration,
             hooks,
             &mut || Ok(()),
+            |_, _| Ok(()),
         )?)
     }
 
     /// Records the programs of a scene, with the closures that its hooks refer to; `look` is asked
-    /// between them whether to go on.
+    /// between them whether to go on. `then` may bring the system into its state, and record more
+    /// of what the programs were recorded of: kinematics and reactions are there.
     ///
     /// # Errors
-    /// Functions that the equations cannot supply, and what `look` answers.
+    /// Functions that the equations cannot supply, and what `look` and `then` answer.
     pub(in crate::analysis) fn recorded_while(
         scene: Arc<Scene>,
         mut configuration: Configuration,
         hooks: &[Hook],
         look: look::Look<'_>,
+        then: impl FnOnce(&mut Self, &Recorder<'_, '_>) -> Result<(), Vec<Diagnostic>>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let lent_inertia = recorded::lent_inertia(scene.within(&configuration));
         configuration.elimination = Elimination {
             lent_inertia,
             ..Elimination::default()
         };
-        let recorded = Recorded::new(&scene, &mut configuration, &scene.initial_q, hooks, look)?;
-        let here = scene.within(&configuration);
-        Ok(Self {
-            recorded,
-            hooks: hooks.to_vec(),
-            energy: None,
-            singular_steps: SingularSteps::default(),
-            traces: aside::Traces::default(),
-            precision: 1e-6,
-            unsolved: None,
-            stage: Vec::with_capacity(scene.layout.n_y()),
-            mover: Mover::new(&scene),
-            numbers: numbers::first_numbers(here),
-            scene,
-            configuration,
-        })
+        let of = |recorded, configuration, recorder: &Recorder<'_, '_>| {
+            let mut system = Self {
+                recorded,
+                hooks: hooks.to_vec(),
+                energy: None,
+                singular_steps: SingularSteps::default(),
+                traces: aside::Traces::default(),
+                precision: 1e-6,
+                unsolved: None,
+                stage: Vec::with_capacity(scene.layout.n_y()),
+                mover: Mover::new(&scene),
+                numbers: numbers::first_numbers(scene.within(&configuration)),
+                scene: Arc::clone(&scene),
+                configuration,
+            };
+            then(&mut system, recorder)?;
+            Ok(system)
+        };
+        let q = &scene.initial_q;
+        Recorded::record(&scene, configuration, q, hooks, look, of)
     }
 
     /// Goes on with other rows, whose pivots are measured at the present positions.
@@ -162,7 +170,14 @@ impl System {
         configuration.active = active;
         let q = &self.numbers[self.scene.layout.q()];
         let look = &mut || Ok(());
-        let mut recorded = Recorded::new(&self.scene, &mut configuration, q, &self.hooks, look)?;
+        let (mut recorded, configuration) = Recorded::record(
+            &self.scene,
+            configuration,
+            q,
+            &self.hooks,
+            look,
+            |r, c, _| Ok((r, c)),
+        )?;
         if let Some(implicit) = &self.recorded.implicit {
             let here = self.scene.within(&configuration);
             recorded.make_implicit(here, implicit.formulation())?;

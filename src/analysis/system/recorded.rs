@@ -23,7 +23,7 @@ use super::tunnelling::ThicknessBounds;
 use super::turns::Turns;
 use crate::analysis::look::Look;
 use crate::diagnostic::Diagnostic;
-use crate::expr::program::Program;
+use crate::expr::program::{Builder, Program};
 use crate::scene::articulated::ArticulatedFactor;
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured, Way};
@@ -33,6 +33,7 @@ use crate::scene::programs;
 use crate::scene::recorder::{self, Recorder};
 use crate::scene::solve;
 use crate::scene::{Scene, Source};
+use std::cell::RefCell;
 
 /// Depth of the deepest forest that is also eliminated by the entries of the mass matrix: the
 /// number of operations grows with the square of the depth.
@@ -79,23 +80,27 @@ pub(in crate::analysis) struct Recorded {
 impl Recorded {
     /// Records the programs of a scene, and chooses how accelerations are eliminated: pivots are
     /// measured at the positions `q`, and the shorter rate is kept. The hooks of the scene refer to
-    /// `hooks`.
+    /// `hooks`. Returns what `then` makes of it and of the configuration, while the recorder can
+    /// record more of the same instant.
     ///
     /// # Errors
-    /// Functions that the equations cannot supply.
-    pub fn new(
+    /// Functions that the equations cannot supply, and what `then` answers.
+    pub fn record<T>(
         scene: &Scene,
-        configuration: &mut Configuration,
+        mut configuration: Configuration,
         q: &[f64],
         hooks: &[Hook],
         look: Look<'_>,
-    ) -> Result<Self, Vec<Diagnostic>> {
-        choose_elimination(scene, configuration, q);
+        then: impl FnOnce(Self, Configuration, &Recorder<'_, '_>) -> Result<T, Vec<Diagnostic>>,
+    ) -> Result<T, Vec<Diagnostic>> {
+        choose_elimination(scene, &mut configuration, q);
         look()?;
-        let together = record_together(scene, configuration, look)?;
+        let ways = ways(&configuration);
+        let builders = [recorder::builder(), recorder::builder()];
+        let (together, recorder) = record_together(scene, &ways, &builders, look)?;
         look()?;
-        configuration.elimination.way = together.way;
-        let here = scene.within(configuration);
+        configuration.elimination.way = recorder.scene().configuration.elimination.way;
+        let here = scene.within(&configuration);
         let switches = (together.branches.switching.as_ref()).map(|s| &s.switches);
         let readers: Vec<&Program> = std::iter::once(&together.rate).chain(switches).collect();
         let turns = Turns::new(here, &readers)?;
@@ -113,7 +118,7 @@ impl Recorded {
         look()?;
         let peaks = Peaks::new(here)?;
         look()?;
-        Ok(Self {
+        let recorded = Self {
             turns,
             rate: Recording::new(together.rate),
             rows: together.rows,
@@ -129,7 +134,8 @@ impl Recorded {
             samples,
             pulses,
             peaks,
-        })
+        };
+        then(recorded, configuration, &recorder)
     }
 
     /// Records the implicit equations, too.
@@ -189,8 +195,6 @@ impl Recorded {
 
 /// Programs that have the rows of a scene in common, and are recorded together.
 struct Together {
-    /// the way in which accelerations are found
-    way: Way,
     rate: Program,
     rows: Rows,
     branches: Branches,
@@ -198,35 +202,39 @@ struct Together {
     downstream: Option<Box<DownstreamRates>>,
 }
 
-/// Chooses the way of elimination that takes fewer operations, and records with it what reads rows
-/// or the rates; deep forests are not tried the quadratic way, and rows are left where they are to
-/// be eliminated.
-fn record_together(
-    scene: &Scene,
-    configuration: &Configuration,
-    look: Look<'_>,
-) -> Result<Together, Vec<Diagnostic>> {
-    let with = |way: Way| {
+/// Returns a configuration with each way in which accelerations may be found; the second is not
+/// tried where rows are eliminated where loops close.
+fn ways(configuration: &Configuration) -> [Configuration; 2] {
+    let first = match configuration.elimination.way {
+        Way::RowsWhereLoopsClose => Way::RowsWhereLoopsClose,
+        Way::ArticulatedBodies | Way::MassMatrix => Way::ArticulatedBodies,
+    };
+    [first, Way::MassMatrix].map(|way| {
         let mut configuration = configuration.clone();
         configuration.elimination.way = way;
         configuration
-    };
-    let rows_where_loops_close = configuration.elimination.way == Way::RowsWhereLoopsClose;
-    let first = with(match rows_where_loops_close {
-        true => Way::RowsWhereLoopsClose,
-        false => Way::ArticulatedBodies,
-    });
-    let second = with(Way::MassMatrix);
-    let builders = [recorder::builder(), recorder::builder()];
-    let mut recorder = Recorder::new(scene.within(&first), &builders[0]);
+    })
+}
+
+/// Chooses the way of elimination that takes fewer operations, and records with it what reads rows
+/// or the rates; deep forests are not tried the quadratic way, and rows are left where they are to
+/// be eliminated.
+fn record_together<'s, 'b>(
+    scene: &'s Scene,
+    [first, second]: &'s [Configuration; 2],
+    builders: &'b [RefCell<Builder>; 2],
+    look: Look<'_>,
+) -> Result<(Together, Recorder<'s, 'b>), Vec<Diagnostic>> {
+    let rows_where_loops_close = first.elimination.way == Way::RowsWhereLoopsClose;
+    let mut recorder = Recorder::new(scene.within(first), &builders[0]);
     look()?;
     let mut rate = programs::rate(recorder.at());
     look()?;
     if !rows_where_loops_close && scene.depth() <= MAX_DEPTH_OF_MATRIX {
         let other = match scene.loops.is_empty() {
-            true => recorder.eliminating(&second),
+            true => recorder.eliminating(second),
             // unknowns of loops are eliminated anew
-            false => Recorder::new(scene.within(&second), &builders[1]),
+            false => Recorder::new(scene.within(second), &builders[1]),
         };
         let matrix = programs::rate(other.at());
         look()?;
@@ -248,14 +256,14 @@ fn record_together(
         0 => None,
         _ => Some(Box::new(DownstreamRates::new(&recorder, &branches)?)),
     };
-    Ok(Together {
-        way: recorder.scene().configuration.elimination.way,
+    let together = Together {
         rate,
         branches,
         rows,
         time_events,
         downstream,
-    })
+    };
+    Ok((together, recorder))
 }
 
 /// Returns the inertia to lend to freedoms that have none although rows determine their motion

@@ -95,6 +95,11 @@ const EMPTY: u32 = u32::MAX;
 impl Builder {
     /// Makes an empty builder.
     pub fn new(folding: Folding) -> Self {
+        Self::with_slots(folding, 64)
+    }
+
+    /// Makes an empty builder with so many slots, a power of two.
+    pub(super) fn with_slots(folding: Folding, n: usize) -> Self {
         Self {
             folding,
             nodes: Vec::new(),
@@ -102,7 +107,7 @@ impl Builder {
             inputs: Vec::new(),
             tables: Vec::new(),
             input_nodes: HashMap::default(),
-            slots: vec![(0, EMPTY); 64],
+            slots: vec![(0, EMPTY); n],
             probes: 0,
             taped: None,
         }
@@ -218,17 +223,31 @@ impl Builder {
         b: Value,
         [ca, cb]: [Option<f64>; 2],
     ) -> Value {
-        match self.simpler(op, a, b, ca, cb) {
-            Some(v) => v,
-            None => {
-                let swap = matches!(
-                    op,
-                    BinaryOp::Add | BinaryOp::Mul | BinaryOp::And | BinaryOp::Or
-                ) && b < a;
-                let (a, b) = if swap { (b, a) } else { (a, b) };
-                self.intern(Node::Binary(op, a, b))
-            }
+        use BinaryOp::{Add, And, Mul, Or};
+        if !self.stays(op, [a, b], [ca, cb])
+            && let Some(v) = self.simpler(op, a, b, ca, cb)
+        {
+            return v;
         }
+        let swap = matches!(op, Add | Mul | And | Or) && b < a;
+        let (a, b) = if swap { (b, a) } else { (a, b) };
+        self.intern(Node::Binary(op, a, b))
+    }
+
+    /// Returns whether it is plain at once that nothing simplifies an operation, as of most.
+    #[inline]
+    fn stays(&self, op: BinaryOp, [a, b]: [Value; 2], [ca, cb]: [Option<f64>; 2]) -> bool {
+        use BinaryOp::{Add, Mul, Sub};
+        let has_number = ca.is_some() || cb.is_some();
+        let is_sum = matches!(op, Add | Sub);
+        let is_factor = op == Mul && has_number;
+        let is_plain = |v: Value| match self.nodes[v.index()] {
+            Node::Unary(UnaryOp::Neg, _) => false,
+            Node::Binary(Add | Sub, ..) => !is_sum,
+            Node::Binary(Mul, ..) => !is_factor,
+            _ => true,
+        };
+        a != b && is_plain(a) && is_plain(b) && (!has_number || is_one_of_many(op, ca, cb))
     }
 
     /// Records the same value by less, if the folding allows it. Not both operands are constant.
@@ -412,6 +431,7 @@ impl Builder {
 
     /// Returns base and `n ≥ 1` of a product that is `xⁿ √x`. At x = 0 the root has no finite
     /// derivative, the product has.
+    #[inline]
     pub(super) fn half_power(&self, node: &Node) -> Option<(Value, i32)> {
         let Node::Binary(BinaryOp::Mul, a, b) = *node else {
             return None;
@@ -658,6 +678,7 @@ impl Builder {
     }
 
     /// Calls `f` with every operand of a node, in order.
+    #[inline]
     pub(super) fn operands(&self, node: &Node, mut f: impl FnMut(Value)) {
         match *node {
             Node::Constant(_) | Node::Input(_) => {}

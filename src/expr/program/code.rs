@@ -162,6 +162,7 @@ impl Core {
     }
 
     /// Calls `each` with the registers that an instruction reads.
+    #[inline]
     pub(super) fn operands(&self, instruction: &Instruction, mut each: impl FnMut(u32)) {
         let Instruction {
             code, a, b, c, d, ..

@@ -8,10 +8,9 @@
 
 use super::builder::Builder;
 use super::guard::{ALWAYS, GuardIx, Guards, NEVER};
-use super::hashing::{HashMap, HashSet};
+use super::hashing::HashMap;
 use super::node::{Node, Value};
 use super::operation::UnaryOp;
-use std::collections::VecDeque;
 
 /// An element of the order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,10 +23,58 @@ pub(super) enum Item {
     End(Value, u8),
 }
 
+/// The nodes that each node reads when it is computed, node after node.
+#[derive(Debug)]
+struct Reads {
+    /// the last of each node and those of the nodes before it
+    ends: Vec<u32>,
+    all: Vec<Value>,
+}
+
+impl Reads {
+    /// Lists what needed nodes read: their operands; those of an inlined comparison in place of
+    /// it, and the base of a power behind its factors.
+    fn new(builder: &Builder, inlined: &[bool], is_needed: impl Fn(usize) -> bool) -> Self {
+        let n = builder.nodes.len();
+        let (mut ends, mut all) = (Vec::with_capacity(n), Vec::with_capacity(2 * n));
+        for (k, node) in builder.nodes.iter().enumerate() {
+            if is_needed(k) {
+                list_reads(builder, inlined, node, &mut all);
+            }
+            ends.push(all.len() as u32);
+        }
+        Self { ends, all }
+    }
+
+    /// Returns what a node reads.
+    #[inline]
+    fn of(&self, v: Value) -> &[Value] {
+        let first = v.index().checked_sub(1).map_or(0, |k| self.ends[k]);
+        &self.all[first as usize..self.ends[v.index()] as usize]
+    }
+}
+
+/// Lists what a node reads.
+#[inline]
+fn list_reads(builder: &Builder, inlined: &[bool], node: &Node, all: &mut Vec<Value>) {
+    match *node {
+        Node::Select(condition, yes, no) if inlined[condition.index()] => {
+            builder.operands(&builder.nodes[condition.index()], |x| all.push(x));
+            all.extend([yes, no]);
+        }
+        Node::Binary(_, a, b) => {
+            all.extend([a, b]);
+            all.extend(builder.half_power(node).map(|(base, _)| base));
+        }
+        _ => builder.operands(node, |x| all.push(x)),
+    }
+}
+
 /// The needed nodes in order, and how they are used.
 #[derive(Debug)]
 pub(super) struct Order {
     pub(super) items: Vec<Item>,
+    reads: Reads,
     /// comparisons that exist only inside the selections they decide
     pub(super) inlined: Vec<bool>,
     /// selections whose sides stand together, by the one that `Begin` and `End` name, in the order
@@ -52,9 +99,12 @@ const MOST_SEARCHED: usize = 200;
 impl Order {
     pub(super) fn new(builder: &Builder, outputs: &[Value]) -> Self {
         let guards = Guards::new(builder, outputs);
+        let is_needed = |k: usize| guards.of[k] != NEVER;
+        let inlined = inlined(builder, outputs, is_needed);
         let mut order = Order {
             items: Vec::new(),
-            inlined: inlined(builder, outputs, |k| guards.of[k] != NEVER),
+            reads: Reads::new(builder, &inlined, is_needed),
+            inlined,
             groups: HashMap::default(),
             is_jumped: vec![false; builder.nodes.len()],
         };
@@ -66,27 +116,20 @@ impl Order {
         order
     }
 
-    /// Calls `f` with the operands of a node; those of an inlined comparison in place of it, and
-    /// the base of a power behind its factors.
-    pub(super) fn operands(&self, builder: &Builder, node: &Node, mut f: impl FnMut(Value)) {
-        if let Node::Select(condition, yes, no) = *node
-            && let (true, Node::Compare(_, a, b)) = (
-                self.inlined[condition.index()],
-                builder.nodes[condition.index()],
-            )
-        {
-            [a, b, yes, no].into_iter().for_each(f);
-            return;
-        }
-        builder.operands(node, &mut f);
-        if let Some((base, _)) = builder.half_power(node) {
-            f(base);
-        }
+    /// Returns what a needed node reads: its operands; those of an inlined comparison in place of
+    /// it, and the base of a power behind its factors.
+    #[inline]
+    pub(super) fn reads(&self, v: Value) -> &[Value] {
+        self.reads.of(v)
     }
 }
 
 /// Returns which comparisons only decide selections, by node.
 fn inlined(builder: &Builder, outputs: &[Value], is_needed: impl Fn(usize) -> bool) -> Vec<bool> {
+    let is_compared = |node: &Node| matches!(node, Node::Compare(..));
+    if !builder.nodes.iter().any(is_compared) {
+        return vec![false; builder.nodes.len()];
+    }
     let (mut uses, mut decides) = (vec![0; builder.nodes.len()], vec![0; builder.nodes.len()]);
     for v in outputs {
         uses[v.index()] += 1;
@@ -100,9 +143,8 @@ fn inlined(builder: &Builder, outputs: &[Value], is_needed: impl Fn(usize) -> bo
             decides[condition.index()] += 1;
         }
     }
-    let is_inlined = |(k, node): (usize, &Node)| {
-        matches!(node, Node::Compare(..)) && uses[k] > 0 && decides[k] == uses[k]
-    };
+    let is_inlined =
+        |(k, node): (usize, &Node)| is_compared(node) && uses[k] > 0 && decides[k] == uses[k];
     builder.nodes.iter().enumerate().map(is_inlined).collect()
 }
 
@@ -164,11 +206,17 @@ impl Met {
         self.open.push(first);
     }
 
+    /// Notes a node; returns whether the search meets it for the first time.
+    fn is_new(&mut self, v: Value) -> bool {
+        let by = &mut self.by[v.index()];
+        let is_new = *by != self.search;
+        *by = self.search;
+        is_new
+    }
+
     /// Notes a node that is to be looked at, once.
     fn meet(&mut self, v: Value) {
-        let by = &mut self.by[v.index()];
-        if *by != self.search {
-            *by = self.search;
+        if self.is_new(v) {
             self.count += 1;
             self.open.push(v);
         }
@@ -188,8 +236,7 @@ struct Walk<'a> {
     partners: HashMap<Value, Vec<Value>>,
     /// guards of the open sides
     open: Vec<GuardIx>,
-    /// needed selections by the guard of their first side: those that share their sides
-    alike: HashMap<GuardIx, VecDeque<Value>>,
+    alike: Alike,
     groups: HashMap<Value, Vec<Value>>,
     /// whether a selection belongs to a group
     grouped: Vec<bool>,
@@ -209,11 +256,11 @@ impl<'a> Walk<'a> {
             met: Met::new(builder.nodes.len()),
             partners: partners(builder, guards),
             open: vec![ALWAYS],
-            alike: alike(builder, guards),
+            alike: Alike::new(builder, guards),
             groups: HashMap::default(),
             grouped: vec![false; builder.nodes.len()],
             tasks: Vec::new(),
-            items: Vec::new(),
+            items: Vec::with_capacity(builder.nodes.len()),
         }
     }
 
@@ -251,65 +298,62 @@ impl<'a> Walk<'a> {
             return;
         }
         if self.is_worth_a_jump(v, node) {
-            self.tasks.push(Task::Sides(v));
-            // what decides is placed last, next to the jump
-            self.tasks
-                .extend(self.deciders(node).iter().rev().map(|&x| Task::Visit(x)));
-            let group = self.group(v);
-            for &member in &group {
-                self.grouped[member.index()] = true;
-                let sides = side_operands(self.builder, &self.builder.nodes[member.index()]);
-                self.visit_shared(v, &sides);
-            }
-            self.groups.insert(v, group);
+            self.visit_selection(v, node);
             return;
         }
         self.tasks.push(Task::Place(v));
         let first = self.tasks.len();
-        self.order.operands(self.builder, node, |x| {
-            if !self.placed[x.index()] {
-                self.tasks.push(Task::Visit(x));
-            }
-        });
+        let reads = self.order.reads(v).iter().rev();
+        let missing = reads.filter(|x| !self.placed[x.index()]);
+        self.tasks.extend(missing.map(|&x| Task::Visit(x)));
         // the last pushed is placed first: least demanding below
-        self.tasks[first..].reverse();
-        let demand = &self.demand;
-        self.tasks[first..].sort_by_key(|task| match task {
-            Task::Visit(x) => demand[x.index()],
-            _ => 0,
-        });
+        match self.tasks.len() - first {
+            0 => {
+                self.tasks.pop();
+                self.place(v);
+            }
+            1 => {}
+            _ => {
+                let demand = &self.demand;
+                self.tasks[first..].sort_by_key(|task| match task {
+                    Task::Visit(x) => demand[x.index()],
+                    _ => 0,
+                });
+            }
+        }
     }
 
-    /// Returns the operands that decide a selection.
-    fn deciders(&self, node: &Node) -> Vec<Value> {
-        let mut operands = Vec::new();
-        self.order
-            .operands(self.builder, node, |x| operands.push(x));
+    /// Visits what a selection reads, then those that share its sides.
+    fn visit_selection(&mut self, v: Value, node: &Node) {
+        self.tasks.push(Task::Sides(v));
+        // what decides is placed last, next to the jump
+        let reads = self.order.reads(v);
         let n_sides = side_operands(self.builder, node).len();
-        operands.truncate(operands.len() - n_sides);
-        operands
+        let deciders = reads[..reads.len() - n_sides].iter().rev();
+        self.tasks.extend(deciders.map(|&x| Task::Visit(x)));
+        let group = self.group(v);
+        for &member in &group {
+            self.grouped[member.index()] = true;
+            let sides = side_operands(self.builder, &self.builder.nodes[member.index()]);
+            self.visit_shared(v, &sides);
+        }
+        self.groups.insert(v, group);
     }
 
     /// Visits what the sides need but others need as well.
     fn visit_shared(&mut self, v: Value, sides: &[Value]) {
-        let mut seen = HashSet::default();
-        let mut below: Vec<(Value, u8)> = sides
-            .iter()
-            .zip(0u8..)
-            .map(|(&x, side)| (x, side))
-            .collect();
+        self.met.begin(v);
+        let mut below: Vec<(Value, u8)> = sides.iter().copied().zip(0u8..).collect();
         while let Some((x, side)) = below.pop() {
-            if self.placed[x.index()] || !seen.insert(x) {
+            if self.placed[x.index()] || !self.met.is_new(x) {
                 continue;
             }
             if self
                 .guards
                 .is_within(self.guards.of[x.index()], self.guards.side(v, side))
             {
-                self.order
-                    .operands(self.builder, &self.builder.nodes[x.index()], |o| {
-                        below.push((o, side))
-                    });
+                let reads = self.order.reads(x).iter();
+                below.extend(reads.map(|&o| (o, side)));
             } else {
                 self.tasks.push(Task::Visit(x));
             }
@@ -334,12 +378,8 @@ impl<'a> Walk<'a> {
     /// Returns the selections whose sides are placed together with those of `v`: they share its
     /// sides, and none needs another.
     fn group(&mut self, v: Value) -> Vec<Value> {
-        let Some(alike) = self.alike.get_mut(&self.guards.side(v, 0)) else {
-            return vec![v];
-        };
         let is_done = |w: &Value| self.placed[w.index()] || self.grouped[w.index()];
-        let done = alike.iter().take_while(|w| is_done(w)).count();
-        alike.drain(..done);
+        let alike = self.alike.not_done(self.guards.side(v, 0), is_done);
         let mut candidates: Vec<Value> = alike
             .iter()
             .take(MOST_CANDIDATES)
@@ -377,11 +417,11 @@ impl<'a> Walk<'a> {
                 || self.met.count <= MOST_SEARCHED
                     && !self.grouped[x.index()]
                     && self.guards.is_within(self.guards.of[x.index()], here);
-            self.order.operands(self.builder, node, |o| {
+            for &o in self.order.reads(x) {
                 if !self.placed[o.index()] {
                     self.met.meet(o);
                 }
-            });
+            }
         }
         is_ready
     }
@@ -447,16 +487,47 @@ pub(super) fn side_operands(builder: &Builder, node: &Node) -> Vec<Value> {
     }
 }
 
-/// Returns needed selections by the guard of their first side.
-fn alike(builder: &Builder, guards: &Guards) -> HashMap<GuardIx, VecDeque<Value>> {
-    let mut alike: HashMap<GuardIx, VecDeque<Value>> = HashMap::default();
-    for (k, node) in builder.nodes.iter().enumerate() {
-        if guards.of[k] != NEVER && matches!(node, Node::Select(..) | Node::If(_)) {
-            let v = Value(k as u32);
-            alike.entry(guards.side(v, 0)).or_default().push_back(v);
+/// Needed selections by the guard of their first side: those that share their sides.
+struct Alike {
+    /// guard by guard, those of one in the order of their values
+    selections: Vec<Value>,
+    /// where those of each guard begin that may not be done yet
+    first: Vec<u32>,
+    /// where those of each guard end
+    end: Vec<u32>,
+}
+
+impl Alike {
+    fn new(builder: &Builder, guards: &Guards) -> Self {
+        let nodes = (0u32..).map(Value).zip(&builder.nodes);
+        let is_selection = |node: &Node| matches!(node, Node::Select(..) | Node::If(_));
+        let mut selections: Vec<(GuardIx, Value)> = nodes
+            .filter(|(v, node)| is_selection(node) && guards.of[v.index()] != NEVER)
+            .map(|(v, _)| (guards.side(v, 0), v))
+            .collect();
+        selections.sort_unstable();
+        let (mut first, mut end) = (vec![0; guards.tree.len()], vec![0; guards.tree.len()]);
+        for (at, &(guard, _)) in (0u32..).zip(&selections) {
+            if end[guard as usize] == 0 {
+                first[guard as usize] = at;
+            }
+            end[guard as usize] = at + 1;
+        }
+        Self {
+            selections: selections.into_iter().map(|(_, v)| v).collect(),
+            first,
+            end,
         }
     }
-    alike
+
+    /// Returns the selections of a guard without the first ones that are done.
+    fn not_done(&mut self, guard: GuardIx, is_done: impl Fn(&Value) -> bool) -> &[Value] {
+        let first = &mut self.first[guard as usize];
+        let here = &self.selections[*first as usize..self.end[guard as usize] as usize];
+        let done = here.iter().take_while(|w| is_done(w)).count();
+        *first += done as u32;
+        &here[done..]
+    }
 }
 
 /// Returns the call that nodes have in common which are computed together.
@@ -507,18 +578,28 @@ fn partners(builder: &Builder, guards: &Guards) -> HashMap<Value, Vec<Value>> {
 
 /// Returns how many registers the tree below each node would need.
 fn demand(builder: &Builder) -> Vec<u16> {
-    let mut demand = vec![0u16; builder.nodes.len()];
+    let mut demand: Vec<u16> = Vec::with_capacity(builder.nodes.len());
     let mut below: Vec<u16> = Vec::new();
-    for (k, node) in builder.nodes.iter().enumerate() {
-        below.clear();
-        builder.operands(node, |v| below.push(demand[v.index()]));
-        below.sort_unstable_by(|a, b| b.cmp(a));
-        demand[k] = below
-            .iter()
-            .zip(0u16..)
-            .map(|(d, held)| d.saturating_add(held))
-            .max()
-            .map_or(0, |most| most.max(1));
+    for node in &builder.nodes {
+        let of = |v: Value| demand[v.index()];
+        let here = match *node {
+            Node::Constant(_) | Node::Input(_) => 0,
+            Node::Unary(_, x) => of(x).max(1),
+            Node::Binary(_, a, b) => {
+                let (a, b) = (of(a), of(b));
+                a.max(b).max(a.min(b).saturating_add(1))
+            }
+            _ => {
+                below.clear();
+                builder.operands(node, |v| below.push(of(v)));
+                below.sort_unstable_by(|a, b| b.cmp(a));
+                let all = below.iter().zip(0u16..);
+                all.map(|(d, held)| d.saturating_add(held))
+                    .max()
+                    .map_or(0, |most| most.max(1))
+            }
+        };
+        demand.push(here);
     }
     demand
 }

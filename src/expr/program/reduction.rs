@@ -61,12 +61,19 @@ impl Builder {
     /// Returns which of the first `n` nodes some values need, calls included of which they need a
     /// derivative alone.
     pub(super) fn read(&self, values: &[Value], n: usize) -> Vec<bool> {
-        let mut needed = self.needed(values, n);
+        let mut needed = vec![false; n];
+        for v in values {
+            needed[v.index()] = true;
+        }
         for k in (0..n).rev() {
-            if let (true, Node::Partial { call, .. }) = (needed[k], self.nodes[k]) {
+            if !needed[k] {
+                continue;
+            }
+            if let Node::Partial { call, .. } = self.nodes[k] {
                 // what it is a derivative of is read, though it need not be computed
                 needed[call.index()] = true;
             }
+            self.operands(&self.nodes[k], |v| needed[v.index()] = true);
         }
         needed
     }

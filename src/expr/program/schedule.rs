@@ -6,11 +6,11 @@
 
 use super::builder::Builder;
 use super::code::{Code, Core, Instruction, Mark, Shape, Sides};
+use super::hashing::HashMap;
 use super::input::Input;
 use super::node::{Node, Value};
 use super::order::{Item, Order};
 use super::run::Program;
-use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Register of a node that has none (yet).
@@ -121,11 +121,12 @@ impl Schedule<'_> {
             if matches!(node, Node::Constant(_) | Node::Input(_)) {
                 continue;
             }
-            let operands = self.operands(&node, &mut shape.lists);
+            let reads = self.order.reads(v);
+            let operands = self.operands(&node, reads, &mut shape.lists);
             // operands that end here free their registers before the result takes one
-            self.order.operands(builder, &node, |x| {
-                allocation.release(x, time as u32, &self.registers)
-            });
+            for &x in reads {
+                allocation.release(x, time as u32, &self.registers);
+            }
             let to = match self.registers[v.index()] {
                 NONE => allocation.take(),
                 held => held,
@@ -136,7 +137,7 @@ impl Schedule<'_> {
             }
             let [a, b, c, d] = operands;
             shape.code.push(Instruction {
-                code: self.code_of(&node),
+                code: self.code_of(&node, reads),
                 to,
                 a,
                 b,
@@ -151,28 +152,26 @@ impl Schedule<'_> {
 
     /// Returns the operands of an instruction: registers, or the place of the arguments of a call,
     /// which are listed.
-    fn operands(&self, node: &Node, lists: &mut Vec<u32>) -> [u32; 4] {
+    fn operands(&self, node: &Node, reads: &[Value], lists: &mut Vec<u32>) -> [u32; 4] {
         let mut operands = [0; 4];
+        let registers = reads.iter().map(|x| self.registers[x.index()]);
         if matches!(node, Node::Call { .. } | Node::Partial { .. }) {
             operands[0] = lists.len() as u32;
-            self.order.operands(self.builder, node, |x| {
-                lists.push(self.registers[x.index()]);
-            });
-            return operands;
-        }
-        let mut places = operands.iter_mut();
-        self.order.operands(self.builder, node, |x| {
-            if let Some(place) = places.next() {
-                *place = self.registers[x.index()];
+            lists.extend(registers);
+        } else {
+            for (place, register) in operands.iter_mut().zip(registers) {
+                *place = register;
             }
-        });
+        }
         operands
     }
 
-    fn code_of(&self, node: &Node) -> Code {
+    fn code_of(&self, node: &Node, reads: &[Value]) -> Code {
         match *node {
             Node::Unary(op, _) => Code::Unary(op),
             Node::Whole(_, n) => Code::Whole(n),
+            // only powers read a third
+            Node::Binary(op, ..) if reads.len() == 2 => Code::Binary(op),
             Node::Binary(op, ..) => match self.builder.half_power(node) {
                 Some((_, n)) => Code::HalfPower(n),
                 None => Code::Binary(op),
@@ -257,9 +256,9 @@ impl Allocation {
         let mut last_use = vec![0; builder.nodes.len()];
         for (time, item) in order.items.iter().enumerate() {
             if let Item::Node(v) = item {
-                order.operands(builder, &builder.nodes[v.index()], |x| {
-                    last_use[x.index()] = time as u32
-                });
+                for x in order.reads(*v) {
+                    last_use[x.index()] = time as u32;
+                }
             }
         }
         for v in outputs {

@@ -17,6 +17,8 @@ use super::tape::{Shelf, Taped};
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// Slots of a builder that records equations, at the beginning.
+const SLOTS_OF_EQUATIONS: usize = 2048;
 /// Generations that a structure is kept without being asked for.
 const KEPT: u32 = 2;
 
@@ -97,7 +99,7 @@ impl Builder {
     /// Makes an empty builder that follows the tape of the one before at its place, where this
     /// thread looks for structures.
     pub(crate) fn again_or_new(folding: Folding) -> Self {
-        let mut builder = Self::new(folding);
+        let mut builder = Self::with_slots(folding, SLOTS_OF_EQUATIONS);
         builder.taped = tape().map(Box::new);
         builder
     }

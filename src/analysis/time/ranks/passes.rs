@@ -146,6 +146,7 @@ fn may_vanish(looks: &[Look<'_>], k: usize) -> bool {
 struct Search<'s> {
     scene: Configured<'s>,
     gradients: Gradients,
+    mover: Mover,
     /// rows that take part
     rows: Vec<usize>,
     /// the longest that each row is on the way   (n_rows)
@@ -184,6 +185,7 @@ impl<'s> Search<'s> {
         let search = Self {
             scene,
             gradients,
+            mover: Mover::new(&scene),
             rows: active(scene),
             usual,
             values: system.row_values(),
@@ -248,8 +250,8 @@ impl<'s> Search<'s> {
     /// Returns the state at a part `s` of the way between two others: positions cubic in time,
     /// closed onto the rows or not.
     fn between(&self, a: &[f64], b: &[f64], s: f64, closed: bool) -> Vec<f64> {
-        let (scene, l) = (self.scene, self.scene.layout);
-        let mover = Mover::new(&scene);
+        let l = self.scene.layout;
+        let mover = &self.mover;
         let h = b[Layout::TIME] - a[Layout::TIME];
         let rate = |n: &[f64]| {
             let mut rate = vec![0.0; l.n_q];

@@ -112,7 +112,8 @@ pub(super) fn select(
 ) -> (Vec<usize>, f64) {
     let sizes = rows.iter().map(norm).collect();
     if rows.n_columns < MANY_COLUMNS {
-        let (mut rows, mut unit) = (rows, Unit::default());
+        let mut unit = Unit::with_capacity(rows.n_columns);
+        let mut rows = rows;
         let take = |pivot: usize, open: &[usize], sizes: &mut [f64]| {
             take_away((&mut rows, &mut unit), pivot, open, sizes);
         };
@@ -131,7 +132,8 @@ fn choose(
     most: usize,
     mut take_away: impl FnMut(usize, &[usize], &mut [f64]),
 ) -> (Vec<usize>, f64) {
-    let (mut chosen, mut least) = (Vec::new(), f64::INFINITY);
+    let mut chosen = Vec::with_capacity(most.min(sizes.len()));
+    let mut least = f64::INFINITY;
     let mut open: Vec<usize> = (0..sizes.len()).collect();
     while chosen.len() < most {
         let larger = |a: &&usize, b: &&usize| sizes[**a].total_cmp(&sizes[**b]);
@@ -157,12 +159,21 @@ fn choose(
 }
 
 /// The unit of a chosen row.
-#[derive(Default)]
 struct Unit {
     /// places and values of what is not zero
     entries: Vec<(usize, f64)>,
-    /// all of it, where little is zero   (n_columns)
+    /// all of it   (n_columns)
     all: Vec<f64>,
+}
+
+impl Unit {
+    /// Makes a place for units of so many columns.
+    fn with_capacity(n_columns: usize) -> Self {
+        Self {
+            entries: Vec::with_capacity(n_columns / 2),
+            all: Vec::with_capacity(n_columns),
+        }
+    }
 }
 
 /// Takes what a chosen row determines from the open ones (1). `unit`: a place for its unit.
@@ -179,8 +190,10 @@ fn take_away(
     all.clear();
     all.extend(chosen);
     entries.clear();
-    entries.extend(all.iter().copied().enumerate().filter(|e| e.1 != 0.0));
-    let is_dense = 2 * entries.len() > all.len();
+    let is_dense = 2 * all.iter().filter(|x| **x != 0.0).count() > all.len();
+    if !is_dense {
+        entries.extend(all.iter().copied().enumerate().filter(|e| e.1 != 0.0));
+    }
     for &r in open {
         let row = rows.row_mut(r);
         let changed = match is_dense {
@@ -361,7 +374,7 @@ mod tests {
             let sizes: Vec<f64> = rows.iter().map(norm).collect();
             for preference in [1, 2, 3] {
                 let preferred = |r: usize| r.is_multiple_of(preference);
-                let (mut dense, mut unit) = (rows.clone(), Unit::default());
+                let (mut dense, mut unit) = (rows.clone(), Unit::with_capacity(rows.n_columns));
                 let by_differences = choose(sizes.clone(), preferred, usize::MAX, |p, o, s| {
                     take_away((&mut dense, &mut unit), p, o, s);
                 });

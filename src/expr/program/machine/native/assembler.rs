@@ -73,6 +73,9 @@ const RDX: u8 = 2;
 const RBX: u8 = 3;
 const RBP: u8 = 5;
 
+/// Length of the code of a step, about.
+const BYTES_PER_STEP: usize = 20;
+
 /// A jump whose distance is not known yet: the place of the distance in the code.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Jump(usize);
@@ -85,9 +88,10 @@ pub(super) struct Assembler {
 }
 
 impl Assembler {
-    /// Begins a function that is given the frame, the inputs and a place for the outputs.
-    pub(super) fn new(calls: bool) -> Self {
-        let mut code = Vec::new();
+    /// Begins a function of so many steps that is given the frame, the inputs and a place for the
+    /// outputs.
+    pub(super) fn new(calls: bool, n_steps: usize) -> Self {
+        let mut code = Vec::with_capacity(BYTES_PER_STEP * n_steps);
         if calls {
             // push rbx, rbp, rax (that aligns the stack); rbx = rdi; rbp = rdx
             code.extend([0x53, 0x55, 0x50, 0x48, 0x89, 0xFB, 0x48, 0x89, 0xD5]);

@@ -94,7 +94,7 @@ pub(super) fn translate(
     let is_target = steps.jumped_to();
     let (needs, last_read) = needs(steps, core, &is_target);
     let mut translation = Translation {
-        assembler: Assembler::new(steps.steps.iter().any(is_call)),
+        assembler: Assembler::new(steps.steps.iter().any(is_call), steps.steps.len()),
         held: [None; N_HOLDING],
         places: vec![NOWHERE; steps.n_slots()],
         homes: homes(steps, core),
