@@ -231,7 +231,8 @@ fn as_text(o: &Outline) -> String {
         }
     };
     let unknowns: Vec<String> = (o.unknowns.iter())
-        .map(|(name, value)| format!("{name} = {value}"))
+        // without the sign of a zero
+        .map(|(name, value)| format!("{name} = {}", value + 0.0))
         .collect();
     list(
         "unknowns that are integrated, with their values at the start",

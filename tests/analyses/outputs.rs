@@ -83,9 +83,14 @@ fn models() -> Vec<(String, String, f64)> {
     all
 }
 
-/// Bits of all columns at the rows of the first number of outputs, for a run that has `every` times as many.
+/// Bits of all columns at the rows of the first number of outputs, for a run that has `every` times as many; and at the last row, which is
+/// where a run stops that does not arrive.
 fn bits(run: &Run, every: usize) -> Vec<(String, Vec<u64>)> {
-    let shared = |values: &[f64]| values.iter().step_by(every).map(|x| x.to_bits()).collect();
+    let shared = |values: &[f64]| {
+        let (last, before) = values.split_last().expect("rows");
+        let shared = before.iter().step_by(every).chain([last]);
+        shared.map(|x| x.to_bits()).collect()
+    };
     let columns = run.columns.iter();
     columns
         .map(|c| (c.name.clone(), shared(&c.values)))
