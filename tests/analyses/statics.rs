@@ -380,3 +380,92 @@ fn of_what_moves_the_load_that_nothing_carries_is_named() {
         "{why}"
     );
 }
+
+/// A part on a hinge with friction, held by a beam: what is left at rest is rounding, and little of the loads alone.
+const HELD_BY_A_BEAM: &str = "\
+a beam in kN, t, cm, ms
+UNITS/FORCE=KNEWTON, MASS=TONNE, LENGTH=CENTIMETER, TIME=MILLISECOND
+PART/1, GROUND
+MARKER/1001, PART=1, QP=0.0,0.0,0.0, REULER=0.0,0.0,0.0
+PART/2, MASS=0.00013971780233207936, CM=1002, IP=0.06585109564022029,0.06501122407159378,0.03939399507502695,0.0020914810493940224,0.0002563556583389809,-0.005341030167415254
+, QG=23.17571595696437,51.041051226916935,5.422380477715105, REULER=-1.5183884976305717,2.1848559460833212,-1.2539039820108102
+MARKER/1002, PART=2, QP=14.832555622298443,-7.373677385439673,12.314031797767377
+ACCGRAV/IGRAV=0.00028808349811592585, JGRAV=-0.0003912404637200311, KGRAV=-0.0008522322439695804
+MARKER/1003, PART=2, QP=12.596438034751639,7.905400981269309,44.38486164416224, REULER=1.1329158184570145,0.6684959442649572,-0.2387477208563088
+MARKER/1004, PART=1, QP=-6.982176392502631,38.006349300082036,-27.9209791869309, REULER=-1.7734698122406423,2.840598740660216,-0.5779452063164725
+JOINT/1, REVOLUTE, I=1003, J=1004
+FRICTION/1, JOINT=1, MU_STATIC=0.26244764421640465, MU_DYNAMIC=0.2018828032433882, STICTION_TRANSITION_VELOCITY=0.017706716876741784, MAX_STICTION_DEFORMATION=0.1
+, PIN_RADIUS=7.495068006882363, FRICTION_ARM=7.495068006882363, BENDING_REACTION_ARM=30.0
+MARKER/1005, PART=2, QP=2.6422262006549597,25.808681131400945,13.95758310532118, REULER=-2.326334236419932,0.325664568227154,-2.859518166535659
+MARKER/1006, PART=1, QP=-1.1439340909024487,73.52868646089786,6.249267819564519, REULER=-1.3750152981608705,1.8851163118266112,-0.09156691439858555
+BEAM/1, I=1005, J=1006, LENGTH=50.0, AREA=3.925372290543761, IXX=2.452346519489396, IYY=1.226173259744698, IZZ=1.5940252376681074
+, ASY=1.1, ASZ=1.2, EMODULUS=235.71944184464618, GMODULUS=90.66132378640236, CRATIO=1.4511609643632384
+END
+";
+
+#[test]
+fn what_is_at_rest_is_found_at_rest_once_more() {
+    let mut s = begin(
+        whole(HELD_BY_A_BEAM),
+        "test",
+        options(&["AZ(1003,1004)"], 1e-6),
+    );
+    for _ in 0..3 {
+        go(&mut s, Analysis::Static, 0.0, 1);
+    }
+    assert!(s.run.record.counts.steps < 200, "{:?}", s.run.record.counts);
+}
+
+#[test]
+fn what_is_at_rest_stays_so_in_any_units() {
+    // a part on a hinge with friction, held by a beam; units of length, of time and of mass in those of a metre, a second, a kilogram
+    for (long, short, heavy) in [
+        (1.0_f64, 1.0, 1.0),
+        (100.0, 1000.0, 0.001),
+        (1000.0, 1.0, 1.0),
+        (39.37, 1.0, 2.2),
+    ] {
+        let force = heavy * long / (short * short);
+        let [area, bending, elastic] = [
+            4e-4 * long * long,
+            1.2e-8 * long.powi(4),
+            2.36e9 * force / (long * long),
+        ];
+        let inertia = 0.006 * heavy * long * long;
+        let text = format!(
+            "{GROUND}PART/2, MASS={}, CM=20, IP={inertia},{inertia},{inertia}, QG={},0,0\nMARKER/20, PART=2, QP={},{},0\nMARKER/21, PART=2\n\
+             MARKER/11, PART=1, QP={},0,0\nJOINT/1, REVOLUTE, I=21, J=11\nFRICTION/1, JOINT=1, MU_STATIC=0.26, MU_DYNAMIC=0.2, \
+             PIN_RADIUS={}, FRICTION_ARM={}, BENDING_REACTION_ARM={}\nMARKER/22, PART=2, QP={},0,0\nMARKER/12, PART=1\n\
+             BEAM/1, I=22, J=12, LENGTH={}, AREA={area}, IXX={bending}, IYY={bending}, IZZ={bending}, EMODULUS={elastic}, GMODULUS={}\n\
+             ACCGRAV/JGRAV={}\nEND\n",
+            0.14 * heavy,
+            0.2 * long,
+            0.1 * long,
+            0.03 * long,
+            0.2 * long,
+            0.05 * long,
+            0.05 * long,
+            0.3 * long,
+            0.3 * long,
+            0.5 * long,
+            elastic / 2.6,
+            -9.81 * long / (short * short),
+        );
+        let mut s = session(&text, &["DY(20,11)"]);
+        for _ in 0..4 {
+            go(&mut s, Analysis::Static, 0.0, 1);
+        }
+        let drops = &s
+            .run
+            .columns
+            .iter()
+            .find(|c| c.name == "DY(20,11)")
+            .expect("a column")
+            .values;
+        let rest = &drops[drops.len() - 3..];
+        assert!(
+            rest.iter().all(|y| (y - rest[0]).abs() < 1e-9 * long),
+            "{rest:?}"
+        );
+    }
+}

@@ -340,13 +340,15 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// Returns how large the loads are, whatever cancels: Σ |force| + Σ |torque| / length + weight.
+    /// Loads that follow from reactions, as those of friction, are left out: they are no larger.
     pub fn load_scale(&self) -> S {
         let (_, actions) = self.scratch.while_solving(|| self.loads());
         let mass: f64 = self.scene.links.iter().map(|l| l.mass).sum();
         let weight = S::constant(mass * self.scene.gravity.norm());
         actions.iter().fold(weight, |sum, a| {
             let torque = a.torque.norm2().sqrt().scale(1.0 / self.scene.length);
-            sum + a.force.norm2().sqrt() + torque
+            let size = a.force.norm2().sqrt() + torque;
+            sum + S::select(size.same(size), size, S::zero())
         })
     }
 
