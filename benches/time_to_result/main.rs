@@ -168,21 +168,9 @@ fn write_other(folder: &Path, xml: String) -> PathBuf {
 fn run(folder: &Path) -> (f64, f64) {
     let out = folder.join("out");
     let _ = std::fs::remove_dir_all(&out);
-    let begin = Instant::now();
-    let done = Command::new(env!("CARGO_BIN_EXE_cognate"))
-        .arg("run")
-        .arg(folder.join("model.acf"))
-        .arg("--out")
-        .arg(&out)
-        .arg("--quiet")
-        .output()
-        .expect("cognate runs");
-    let seconds = begin.elapsed().as_secs_f64();
-    assert!(
-        done.status.success(),
-        "{}",
-        String::from_utf8_lossy(&done.stderr)
-    );
+    let script = folder.join("model.acf");
+    let [script, to] = [&script, &out].map(|path| path.to_string_lossy());
+    let seconds = seconds(&["run", &script, "--out", &to, "--quiet"]);
     let record = std::fs::read_to_string(out.join("model.json")).expect("a record");
     let record: serde_json::Value = serde_json::from_str(&record).expect("a record in JSON");
     (

@@ -30,7 +30,7 @@ impl Peer {
     pub fn told(&self) -> String {
         match &self.version {
             Some(version) => format!(
-                "MuJoCo {version}: loading and stepping alone, in a Python that runs already; one step of 0.002 s, no control of errors"
+                "MuJoCo {version}: loading and stepping alone, in a Python that runs already; steps of 0.002 s, errors not controlled"
             ),
             None => "MuJoCo is left out: `python3 -c \"import mujoco\"` fails (pip install mujoco)"
                 .into(),

@@ -59,9 +59,10 @@ impl GivenVelocities {
         // velocities are linear in v: an evaluation for motions, and one for a coordinate of each
         // tree
         let (tree_of, coordinates) = trees(&scene, model);
+        let squares: Vec<Squares> = scene.links.iter().map(Squares::of).collect();
         let evaluate = |v: &[f64]| {
             let at = Equations::new(scene, &numbers(scene, t, q, v, x));
-            part_velocities(&scene, model, &at)
+            part_velocities((&scene, &squares), model, &at)
         };
         let (still, targets) = evaluate(&vec![0.0; n]);
         let zero: Vec<f64> = still.iter().map(|found| found.value).collect();
@@ -238,18 +239,15 @@ impl Target {
 /// Evaluates the velocity components of all parts as the dataset would give them, with origin and
 /// value of those that it gives; then joint rates. Ways count in sizes of the mechanism.
 fn part_velocities(
-    scene: &Scene,
+    (scene, squares): (&Scene, &[Squares]),
     model: &Model,
     at: &Equations<'_, f64>,
 ) -> (Vec<Found>, Vec<Target>) {
     let mut values = Vec::new();
     let mut targets = Vec::new();
     let way = 1.0 / size_of(scene);
-    let mut has_energy = vec![false; scene.links.len()];
-    for (k, (link, state)) in scene.links.iter().zip(at.links()).enumerate() {
-        let squares = Squares::of(link);
-        has_energy[k] = squares.is_definite();
-        for (value, size) in squares.at(state, scene.size) {
+    for (k, (own, state)) in squares.iter().zip(at.links()).enumerate() {
+        for (value, size) in own.at(state, scene.size) {
             targets.push(Target::of_energy(k));
             values.push(Found::of(value, size));
         }
@@ -268,7 +266,7 @@ fn part_velocities(
         .chain(w.map(|x| Found::of(x, turning)));
         let given = (data.velocity.iter().map(|v| v.map(|v| v * way)))
             .chain(data.angular_velocity.iter().copied());
-        let rests = part.link.is_some_and(|link| has_energy[link]);
+        let rests = part.link.is_some_and(|link| squares[link].is_definite());
         for (found, given) in found.zip(given) {
             if given.is_some() || !rests {
                 values.push(found);
