@@ -24,6 +24,8 @@ mod batch;
 mod breaks;
 mod builder;
 mod code;
+mod components;
+mod compose;
 mod dependence;
 mod display;
 mod expand;

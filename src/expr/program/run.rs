@@ -2,7 +2,7 @@
 
 use super::code::Core;
 use super::input::Input;
-use super::machine::{Engine, Machine};
+use super::machine::{Alike, Engine, Machine};
 use crate::diagnostic::{Cause, Diagnostic, Error};
 use crate::scalar::{Scalar, Table};
 use std::sync::Arc;
@@ -44,6 +44,11 @@ impl<S> Default for Work<S> {
 impl Program {
     pub(super) fn new(inputs: Vec<Input>, core: Core) -> Self {
         Self::of(inputs.into(), Machine::new(Arc::new(core)))
+    }
+
+    /// Returns a program whose components are run one by one.
+    pub(super) fn of_components(inputs: Vec<Input>, core: Core, alike: Alike) -> Self {
+        Self::of(inputs.into(), Machine::of_components(Arc::new(core), alike))
     }
 
     fn of(inputs: Arc<[Input]>, machine: Machine) -> Self {
@@ -348,9 +353,9 @@ impl Program {
     /// Lays out the frame of the machine.
     #[cold]
     fn prepare_machine(&self, work: &mut Work) {
-        self.prepare(work);
         work.owner = 0;
-        work.registers.extend(self.machine.extras());
+        work.registers.clear();
+        self.machine.lay_out(&mut work.registers);
         work.owner = self.id + FOR_THE_MACHINE;
     }
 }

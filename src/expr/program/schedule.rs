@@ -31,6 +31,17 @@ pub(super) fn program(
     outputs: &[Value],
     layout: Option<&[Input]>,
 ) -> (Program, Vec<Value>) {
+    let (inputs, core, constants) = core(builder, outputs, layout);
+    (Program::new(inputs, core), constants)
+}
+
+/// Returns the straight code that computes `outputs`, the inputs that the host supplies, and the
+/// nodes that the constants are.
+pub(super) fn core(
+    builder: &Builder,
+    outputs: &[Value],
+    layout: Option<&[Input]>,
+) -> (Vec<Input>, Core, Vec<Value>) {
     let order = Order::new(builder, outputs);
     let mut registers = vec![NONE; builder.nodes.len()];
     let mut constants = Vec::new();
@@ -46,19 +57,9 @@ pub(super) fn program(
             _ => {}
         }
     }
-    // inputs in the order in which the builder was asked for them
-    needed.sort_unstable();
-    let mut inputs: Vec<Input> = layout.map(<[Input]>::to_vec).unwrap_or_default();
-    let places: HashMap<Input, usize> = inputs.iter().enumerate().map(|(k, &i)| (i, k)).collect();
-    let mut used = Vec::with_capacity(needed.len());
-    for &(input, v) in &needed {
-        let input = builder.inputs[input as usize];
-        let place = places.get(&input).copied().unwrap_or_else(|| {
-            inputs.push(input);
-            inputs.len() - 1
-        });
-        registers[v.index()] = (constants.len() + used.len()) as u32;
-        used.push(place as u32);
+    let (inputs, used) = supplied(builder, &mut needed, layout);
+    for (register, &(_, v)) in (constants.len() as u32..).zip(&needed) {
+        registers[v.index()] = register;
     }
     let first_temporary = (constants.len() + used.len()) as u32;
     let mut schedule = Schedule {
@@ -78,7 +79,29 @@ pub(super) fn program(
             ..shape
         }),
     };
-    (Program::new(inputs, core), constants)
+    (inputs, core, constants)
+}
+
+/// Returns what the host supplies, and where among it those inputs stand that are needed, each with
+/// its node: these are sorted in the order in which the builder was asked for them.
+pub(super) fn supplied(
+    builder: &Builder,
+    needed: &mut [(u32, Value)],
+    layout: Option<&[Input]>,
+) -> (Vec<Input>, Vec<u32>) {
+    needed.sort_unstable();
+    let mut inputs: Vec<Input> = layout.map(<[Input]>::to_vec).unwrap_or_default();
+    let places: HashMap<Input, usize> = inputs.iter().enumerate().map(|(k, &i)| (i, k)).collect();
+    let mut used = Vec::with_capacity(needed.len());
+    for &(input, _) in &*needed {
+        let input = builder.inputs[input as usize];
+        let place = places.get(&input).copied().unwrap_or_else(|| {
+            inputs.push(input);
+            inputs.len() - 1
+        });
+        used.push(place as u32);
+    }
+    (inputs, used)
 }
 
 /// Returns the numbers that some values of a builder are; what is no constant is NaN.

@@ -8,6 +8,7 @@
 //! the last instruction.
 
 use super::builder::{Builder, Folding};
+use super::compose;
 use super::hashing::HashMap;
 use super::input::Input;
 use super::node::{Node, Value};
@@ -145,11 +146,14 @@ fn program(
     layout: Option<&[Input]>,
 ) -> (Program, Vec<Value>) {
     let Some(structures) = PRESENT.with(|present| present.borrow().clone()) else {
-        return schedule::program(builder, outputs, layout);
+        return compose::program(builder, outputs, layout);
     };
     let mut met = structures.0.lock().unwrap_or_else(PoisonError::into_inner);
     let now = met.generation;
-    let alike = met.by_hash.entry(hash(builder, outputs)).or_default();
+    let alike = met
+        .by_hash
+        .entry(hash(&builder.nodes, outputs))
+        .or_default();
     if let Some(found) = alike.iter_mut().find(|s| s.is_of(builder, outputs, layout)) {
         found.generation = now;
         let constants = schedule::numbers(builder, &found.constants);
@@ -158,7 +162,7 @@ fn program(
         found.program = program.clone();
         return (program, found.constants.clone());
     }
-    let (program, constants) = schedule::program(builder, outputs, layout);
+    let (program, constants) = compose::program(builder, outputs, layout);
     alike.push(Structure {
         nodes: builder.nodes.clone(),
         arguments: builder.arguments.clone(),
@@ -184,18 +188,19 @@ impl Structure {
     }
 }
 
-fn is_alike((a, b): (&Node, &Node)) -> bool {
+/// Returns whether two nodes differ as constants do, or not at all.
+pub(super) fn is_alike((a, b): (&Node, &Node)) -> bool {
     matches!((a, b), (Node::Constant(_), Node::Constant(_))) || a == b
 }
 
 /// Returns a number in which structures differ that are not alike: operands of the nodes, whose
 /// kinds are compared.
-fn hash(builder: &Builder, outputs: &[Value]) -> u64 {
+pub(super) fn hash(nodes: &[Node], outputs: &[Value]) -> u64 {
     let mix = |h: u64, word: u32| {
         (h.rotate_left(5) ^ u64::from(word)).wrapping_mul(0x9E37_79B9_7F4A_7C15)
     };
-    let mut h = builder.nodes.len() as u64;
-    for node in &builder.nodes {
+    let mut h = nodes.len() as u64;
+    for node in nodes {
         match *node {
             Node::Binary(_, a, b) => h = mix(mix(h, a.0), b.0),
             Node::Unary(_, a) | Node::Whole(a, _) => h = mix(h, a.0),

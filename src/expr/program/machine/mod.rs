@@ -11,6 +11,7 @@
 //! [`RUNS_PER_TRANSLATION`]. Where somebody knows that many runs follow, it is translated before
 //! the first.
 
+mod alike;
 mod interpreter;
 mod lower;
 #[cfg(all(
@@ -33,6 +34,7 @@ mod steps;
 
 use super::code::Core;
 use crate::clock::Moment;
+pub(super) use alike::{Alike, KindOfCode};
 pub(super) use lower::written_out;
 pub(super) use native::Columns;
 use native::Native;
@@ -81,6 +83,8 @@ pub enum Engine {
 pub(super) struct Machine {
     core: Arc<Core>,
     made: Arc<Made>,
+    /// components that are run one by one in place of the whole
+    alike: Option<Arc<Alike>>,
 }
 
 /// Steps and code of the processor, each made when it is first needed. They read constants from
@@ -105,20 +109,37 @@ impl std::fmt::Debug for Machine {
 
 impl Machine {
     pub(super) fn new(core: Arc<Core>) -> Self {
-        let made = Arc::default();
-        Self { core, made }
+        let (made, alike) = (Arc::default(), None);
+        Self { core, made, alike }
+    }
+
+    /// Returns the machine of a core that goes through its components.
+    pub(super) fn of_components(core: Arc<Core>, alike: Alike) -> Self {
+        Self {
+            alike: Some(Arc::new(alike)),
+            ..Self::new(core)
+        }
     }
 
     /// Returns the machine of a core with the same shape. What is made of one core is shared where
     /// it is what would be made of the other.
     pub(super) fn with_core(&self, core: Core) -> Self {
+        if let Some(alike) = &self.alike {
+            let alike = alike.with_core(&core);
+            return Self {
+                alike: alike.map(Arc::new),
+                ..Self::new(Arc::new(core))
+            };
+        }
         let steps = self.made.steps.get();
         let made = match steps.is_some_and(|steps| lower::are_of(steps, &self.core, &core)) {
             true => Arc::clone(&self.made),
             false => Arc::default(),
         };
-        let core = Arc::new(core);
-        Self { core, made }
+        Self {
+            made,
+            ..Self::new(Arc::new(core))
+        }
     }
 
     pub(super) fn core(&self) -> &Arc<Core> {
@@ -138,6 +159,9 @@ impl Machine {
 
     /// Returns the engine that runs at present.
     pub(super) fn engine(&self) -> Engine {
+        if let Some(alike) = &self.alike {
+            return alike.engine();
+        }
         match self.made.native.get() {
             Some(_) => Engine::Native,
             None => Engine::Interpreter,
@@ -145,12 +169,28 @@ impl Machine {
     }
 
     pub(super) fn n_steps(&self) -> usize {
-        self.steps().steps.len()
+        match &self.alike {
+            Some(alike) => alike.n_steps(),
+            None => self.steps().steps.len(),
+        }
+    }
+
+    /// Lays out a frame: constants, registers, numbers of the steps, and room for the outputs at
+    /// the end.
+    pub(super) fn lay_out(&self, frame: &mut Vec<f64>) {
+        if let Some(alike) = &self.alike {
+            alike.lay_out(&self.core, frame);
+            return;
+        }
+        let first = frame.len();
+        frame.extend(&self.core.constants);
+        frame.resize(first + self.core.size as usize, f64::NAN);
+        frame.extend(self.extras());
     }
 
     /// Returns the numbers that stand in a frame behind the registers of the straight code: those
     /// of the steps, and room for the outputs.
-    pub(super) fn extras(&self) -> impl Iterator<Item = f64> {
+    fn extras(&self) -> impl Iterator<Item = f64> {
         let extras = self.steps().extras.iter().map(|extra| match *extra {
             Extra::Constant(c) => c,
             Extra::Between | Extra::Ahead => f64::NAN,
@@ -203,6 +243,10 @@ impl Machine {
     /// Goes through the steps, and copies the outputs to the end of the frame; translates the steps
     /// for the next run when that pays.
     pub(super) fn interpret(&self, frame: &mut [f64], inputs: &[f64]) {
+        if let Some(alike) = &self.alike {
+            alike.run(frame, inputs);
+            return;
+        }
         let steps = self.steps();
         steps.run(&self.core, frame, inputs);
         let (slots, outputs) = frame.split_at_mut(steps.n_slots());
@@ -220,6 +264,10 @@ impl Machine {
     /// Translates the steps at once where so many further runs take longer than that.
     #[cfg(feature = "solver")]
     pub(super) fn expect_runs(&self, n_runs: usize) {
+        if let Some(alike) = &self.alike {
+            alike.expect_runs(n_runs);
+            return;
+        }
         let is_decided = self.made.is_decided.load(Ordering::Relaxed);
         if !is_decided && n_runs > runs_per_translation(self.steps()) * 3 / 2 {
             self.translate();
