@@ -477,6 +477,29 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Returns how many groups of links move that nothing but forces can couple: links with what
+    /// carries them, and those that constraints join.
+    pub fn n_mechanisms(&self) -> usize {
+        let mut joined: Vec<usize> = (0..self.links.len()).collect();
+        for (k, link) in self.links.iter().enumerate() {
+            joined[k] = link.parent.map_or(k, |parent| joined[parent]);
+        }
+        let root = |joined: &mut Vec<usize>, mut k: usize| {
+            while joined[k] != k {
+                joined[k] = joined[joined[k]];
+                k = joined[k];
+            }
+            k
+        };
+        for (i, j) in self.constraints.iter().filter_map(|c| c.markers) {
+            if let [Some(i), Some(j)] = [i, j].map(|m| self.markers[m].link) {
+                let (i, j) = (root(&mut joined, i), root(&mut joined, j));
+                joined[i.max(j)] = i.min(j);
+            }
+        }
+        joined.iter().enumerate().filter(|(k, j)| k == *j).count()
+    }
+
     /// Most freedoms on a way from ground to a leaf.
     pub fn depth(&self) -> usize {
         let mut depth = vec![0; self.freedoms.len()];

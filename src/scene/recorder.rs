@@ -29,6 +29,7 @@ impl<'s, 'b> Recorder<'s, 'b> {
     /// Begins recording a scene into a builder; programs read the row of numbers that
     /// [`Layout`](super::layout::Layout) describes. The unknowns of linear loops are eliminated.
     pub fn new(scene: Configured<'s>, builder: &'b RefCell<Builder>) -> Self {
+        (builder.borrow_mut()).expect_components(scene.n_mechanisms());
         let numbers = loops::inputs(&scene, builder);
         let unknowns = match scene.layout.n_loops {
             0 if !scene.loops.is_empty() => loops::eliminated(scene, &numbers, builder),

@@ -4,6 +4,7 @@ use crate::running;
 
 use cognate::analysis::start::assemble;
 use cognate::analysis::verify::outline::outline;
+use cognate::expr::program::Engine;
 use cognate::model::Model;
 use cognate::scene::Scene;
 use cognate::scene::build;
@@ -247,4 +248,93 @@ fn what_a_scissor_lift_computes_grows_with_its_cells() {
         two.1 as f64 <= 2.1 * one.1 as f64,
         "projection: {one:?} {two:?}"
     );
+}
+
+/// Four-bars of other sizes and masses, one with a spring and one that stands elsewhere in the dataset.
+fn several_four_bars(n: usize) -> Model {
+    let mut text = "SEVERAL\nPART/1, GROUND\nMARKER/1, PART=1\nACCGRAV/JGRAV=-9.81\n".to_string();
+    let mut add = |k: usize| {
+        let (first, z, size) = (100 * (k + 1), k as f64, 1.0 + 0.03 * k as f64);
+        let places =
+            [[0.0, 0.0], [0.0, 1.0], [2.0, 1.5], [2.0, 0.0]].map(|[x, y]| [x * size, y * size]);
+        for bar in 0..3 {
+            let [a, b] = [places[bar], places[bar + 1]];
+            let (part, middle) = (first + bar, [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0]);
+            writeln!(
+                text,
+                "PART/{part}, QG={:?},{:?},{z:?}, MASS={:?}, CM={part}0, IP=0.1,0.1,0.2\nMARKER/{part}0, PART={part}",
+                middle[0], middle[1], 1.0 + 0.1 * k as f64,
+            )
+            .unwrap();
+        }
+        for (joint, [x, y]) in places.into_iter().enumerate() {
+            let sides = [
+                joint.checked_sub(1).map(|b| first + b),
+                (joint < 3).then_some(first + joint),
+            ];
+            let [i, j] = [1, 2].map(|side| 10 * (first + 10 * side + joint));
+            for (marker, part) in [i, j].into_iter().zip(sides) {
+                let center = part.map_or([0.0; 3], |p| {
+                    let [a, b] = [places[p - first], places[p - first + 1]];
+                    [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0, z]
+                });
+                writeln!(
+                    text,
+                    "MARKER/{marker}, PART={}, QP={:?},{:?},{:?}",
+                    part.unwrap_or(1),
+                    x - center[0],
+                    y - center[1],
+                    z - center[2],
+                )
+                .unwrap();
+            }
+            writeln!(text, "JOINT/{}, REVOLUTE, I={i}, J={j}", first + joint).unwrap();
+        }
+        if k == 2 {
+            writeln!(
+                text,
+                "SPRINGDAMPER/1, TRANSLATION, I={first}0, J=1, K=30, C=1, LENGTH=0.5"
+            )
+            .unwrap();
+        }
+    };
+    (0..n).rev().for_each(&mut add);
+    whole(&format!("{text}END\n"))
+}
+
+/// What has a companion runs through one piece of code with other constants; straight code is what it must equal.
+#[test]
+fn equal_mechanisms_share_their_code_and_keep_every_bit() {
+    let model = several_four_bars(9);
+    let scene = Scene::compile(&model, &build::Options::default()).expect("a scene");
+    assert_eq!(scene.n_mechanisms(), 9);
+    let mut configuration = Configuration::new(&scene);
+    let mut q = scene.initial_q.clone();
+    assemble::positions(&scene, &mut configuration, 0.0, &mut q, &[1.0]).unwrap();
+    let builder = recorder::builder();
+    let recorder = Recorder::new(scene.within(&configuration), &builder);
+    let at = recorder.at();
+    let rows: Vec<_> = (0..scene.rows.len()).map(|r| at.row(r).value).collect();
+    let all = [
+        programs::rate(at),
+        programs::projection(&scene, at, at.velocities()),
+        rows,
+    ];
+    for (k, values) in all.iter().enumerate() {
+        let program = recorder.program(values).unwrap();
+        let straight = program.with_engine(Engine::Interpreter).unwrap();
+        let (mut work, mut other) = Default::default();
+        for run in 0..60 {
+            let numbers: Vec<f64> = (0..scene.layout.len())
+                .map(|i| (1.7 * i as f64 + 0.3 * run as f64).sin())
+                .collect();
+            let [mut here, mut there] = [0, 1].map(|_| vec![0.0; program.n_outputs()]);
+            program.run(&numbers, &mut work, &mut here);
+            straight.run(&numbers, &mut other, &mut there);
+            let bits = |out: &[f64]| out.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits(&here), bits(&there), "program {k}, run {run}");
+        }
+        let [shared, written] = [&program, &straight].map(|p| p.n_steps_of_code());
+        assert!(2 * shared < written, "program {k}: {shared} of {written}");
+    }
 }

@@ -88,6 +88,8 @@ pub struct Builder {
     pub(super) probes: u64,
     /// what was asked before, or is asked now
     pub(super) taped: Option<Box<Taped>>,
+    /// how many components that share no operation may be recorded, as far as is known
+    pub(super) n_components: usize,
 }
 
 const EMPTY: u32 = u32::MAX;
@@ -110,7 +112,14 @@ impl Builder {
             slots: vec![(0, EMPTY); n],
             probes: 0,
             taped: None,
+            n_components: 1,
         }
+    }
+
+    /// Tells how many components may be recorded that share no operation.
+    #[cfg(feature = "solver")]
+    pub(crate) fn expect_components(&mut self, n: usize) {
+        self.n_components = n;
     }
 
     /// Returns how far it simplifies.

@@ -59,7 +59,7 @@ impl Builder {
     /// the order in which they can be run; the last is what is left. `None`: fewer than `fewest`
     /// are alike, or they are too small a part.
     pub(super) fn components(&self, outputs: &[Value], fewest: usize) -> Option<Vec<Kind>> {
-        if self.nodes.len() < LEAST_NODES {
+        if self.n_components < fewest || self.nodes.len() < LEAST_NODES {
             return None;
         }
         let (parts, last) = parts(self, outputs)?;

@@ -19,8 +19,9 @@ use super::run::Program;
 use super::schedule;
 use std::sync::Arc;
 
-/// Components of a kind from which on they are run by themselves.
-const FEWEST: usize = 2;
+/// Components of a kind from which on they are run by themselves: copying the constants of a member
+/// and gathering its inputs takes about as long as the processor takes to read other code.
+const FEWEST: usize = 4;
 
 /// Returns the program that computes `outputs`, and the nodes that its constants are.
 pub(super) fn program(
@@ -336,6 +337,7 @@ mod tests {
     fn scene(seed: u64, n: u32) -> (Builder, Vec<Value>, Vec<Input>) {
         let mut random = Random(seed);
         let mut b = Builder::new(Folding::Structural);
+        b.n_components = n as usize;
         let inputs: Vec<Input> = (0..3 * n).map(Input::Slot).chain([Input::Time]).collect();
         inputs.iter().for_each(|&input| {
             b.input(input);
@@ -390,7 +392,7 @@ mod tests {
     fn components_run_one_by_one_give_the_bits_of_the_whole() {
         let mut n_composed = 0;
         for seed in 0..60 {
-            let (b, outputs, inputs) = scene(1000 * seed, 2 + (seed % 9) as u32);
+            let (b, outputs, inputs) = scene(1000 * seed, 4 + (seed % 9) as u32);
             let whole = schedule::program(&b, &outputs, Some(&inputs)).0;
             let Some(kinds) = b.components(&outputs, FEWEST) else {
                 continue;
@@ -423,6 +425,7 @@ mod tests {
     #[test]
     fn mechanisms_that_share_an_operation_are_one() {
         let mut b = Builder::new(Folding::Structural);
+        b.n_components = 10;
         let t = b.input(Input::Time);
         let shared = b.unary(UnaryOp::Sin, t);
         let mut outputs = Vec::new();

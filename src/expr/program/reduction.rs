@@ -33,6 +33,7 @@ impl Builder {
         let mut part = Builder::new(self.folding());
         part.inputs.clone_from(&self.inputs);
         part.tables.clone_from(&self.tables);
+        part.n_components = self.n_components;
         part.nodes.reserve(n_needed);
         let mut places = vec![NONE; n];
         let mut origins = Vec::with_capacity(n_needed);

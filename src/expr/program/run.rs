@@ -127,6 +127,11 @@ impl Program {
     pub fn n_steps(&self) -> usize {
         self.machine.n_steps()
     }
+    /// Returns how many steps its code has over plain numbers: components that are alike share
+    /// theirs.
+    pub fn n_steps_of_code(&self) -> usize {
+        self.machine.n_steps_of_code()
+    }
     /// Returns how many registers it takes.
     pub fn work_size(&self) -> usize {
         self.core().size as usize

@@ -131,6 +131,10 @@ impl Alike {
             .sum()
     }
 
+    pub(super) fn n_steps_of_code(&self) -> usize {
+        self.kinds.iter().map(|kind| kind.machine.n_steps()).sum()
+    }
+
     /// Translates what so many further runs make worth it.
     #[cfg(feature = "solver")]
     pub(super) fn expect_runs(&self, n_runs: usize) {

@@ -175,6 +175,13 @@ impl Machine {
         }
     }
 
+    pub(super) fn n_steps_of_code(&self) -> usize {
+        match &self.alike {
+            Some(alike) => alike.n_steps_of_code(),
+            None => self.n_steps(),
+        }
+    }
+
     /// Lays out a frame: constants, registers, numbers of the steps, and room for the outputs at
     /// the end.
     pub(super) fn lay_out(&self, frame: &mut Vec<f64>) {
