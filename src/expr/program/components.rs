@@ -8,9 +8,8 @@
 use super::builder::Builder;
 use super::hashing::HashMap;
 use super::input::Input;
-use super::node::{Node, Value};
+use super::node::{self, Node, Value};
 use super::operation::{BinaryOp, Comparison};
-use super::structure;
 use crate::expr::functions::Function;
 
 /// Nodes of a recording from which on it pays to look for components.
@@ -456,7 +455,7 @@ impl Piece {
     }
 
     fn hash(&self) -> u64 {
-        structure::hash(&self.nodes, &self.results)
+        node::hash(&self.nodes, &self.results)
     }
 
     /// Returns whether it differs from those of a kind in its constants alone, but not in
@@ -467,7 +466,7 @@ impl Piece {
         self.nodes.len() == other.nodes.len()
             && self.results == kind.results
             && self.arguments == other.arguments
-            && self.nodes.iter().zip(&other.nodes).all(structure::is_alike)
+            && self.nodes.iter().zip(&other.nodes).all(node::is_alike)
             && (self.arguments.iter().filter(is_parameter))
                 .all(|v| self.nodes[v.index()] == other.nodes[v.index()])
     }

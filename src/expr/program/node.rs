@@ -55,3 +55,26 @@ impl Node {
         }
     }
 }
+
+/// Returns whether two nodes differ as constants do, or not at all.
+pub(super) fn is_alike((a, b): (&Node, &Node)) -> bool {
+    matches!((a, b), (Node::Constant(_), Node::Constant(_))) || a == b
+}
+
+/// Returns a number in which structures differ that are not alike: operands of the nodes, whose
+/// kinds are compared.
+pub(super) fn hash(nodes: &[Node], outputs: &[Value]) -> u64 {
+    let mix = |h: u64, word: u32| {
+        (h.rotate_left(5) ^ u64::from(word)).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+    };
+    let mut h = nodes.len() as u64;
+    for node in nodes {
+        match *node {
+            Node::Binary(_, a, b) => h = mix(mix(h, a.0), b.0),
+            Node::Unary(_, a) | Node::Whole(a, _) => h = mix(h, a.0),
+            Node::Select(c, yes, no) => h = mix(mix(mix(h, c.0), yes.0), no.0),
+            _ => {}
+        }
+    }
+    outputs.iter().fold(h, |h, v| mix(h, v.0))
+}

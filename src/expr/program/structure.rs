@@ -11,7 +11,7 @@ use super::builder::{Builder, Folding};
 use super::compose;
 use super::hashing::HashMap;
 use super::input::Input;
-use super::node::{Node, Value};
+use super::node::{self, Node, Value};
 use super::run::Program;
 use super::schedule;
 use super::tape::{Shelf, Taped};
@@ -152,7 +152,7 @@ fn program(
     let now = met.generation;
     let alike = met
         .by_hash
-        .entry(hash(&builder.nodes, outputs))
+        .entry(node::hash(&builder.nodes, outputs))
         .or_default();
     if let Some(found) = alike.iter_mut().find(|s| s.is_of(builder, outputs, layout)) {
         found.generation = now;
@@ -184,31 +184,8 @@ impl Structure {
             && self.inputs == builder.inputs
             && self.arguments == builder.arguments
             && self.nodes.len() == builder.nodes.len()
-            && self.nodes.iter().zip(&builder.nodes).all(is_alike)
+            && self.nodes.iter().zip(&builder.nodes).all(node::is_alike)
     }
-}
-
-/// Returns whether two nodes differ as constants do, or not at all.
-pub(super) fn is_alike((a, b): (&Node, &Node)) -> bool {
-    matches!((a, b), (Node::Constant(_), Node::Constant(_))) || a == b
-}
-
-/// Returns a number in which structures differ that are not alike: operands of the nodes, whose
-/// kinds are compared.
-pub(super) fn hash(nodes: &[Node], outputs: &[Value]) -> u64 {
-    let mix = |h: u64, word: u32| {
-        (h.rotate_left(5) ^ u64::from(word)).wrapping_mul(0x9E37_79B9_7F4A_7C15)
-    };
-    let mut h = nodes.len() as u64;
-    for node in nodes {
-        match *node {
-            Node::Binary(_, a, b) => h = mix(mix(h, a.0), b.0),
-            Node::Unary(_, a) | Node::Whole(a, _) => h = mix(h, a.0),
-            Node::Select(c, yes, no) => h = mix(mix(mix(h, c.0), yes.0), no.0),
-            _ => {}
-        }
-    }
-    outputs.iter().fold(h, |h, v| mix(h, v.0))
 }
 
 #[cfg(test)]

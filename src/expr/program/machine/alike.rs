@@ -12,8 +12,8 @@ use super::super::code::{Core, Shape};
 use super::{Engine, Machine};
 use std::sync::Arc;
 
-/// What stands in the code for a constant that is not the same for all members: a number that no
-/// code asks for.
+/// Stands in the code for a constant that is not the same for all members: a number that no code
+/// asks for.
 const PARAMETER: f64 = f64::from_bits(0x7FF8_0C06_4A7E_0000);
 
 /// A program as its components.
