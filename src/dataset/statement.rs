@@ -21,19 +21,37 @@
 use super::lens::*;
 use super::row::{
     Angle, Argument, Binding, Element, Lens, Meaning, Numbered, Opaque, Plain, Routine, Single,
-    Statement, canonical, meaning,
+    Statement, canonical, meaning_among,
 };
 use super::value::{Always, Field, Kind, Number, Value};
 use crate::model::*;
 use crate::physics::joint::Displacements;
+use std::sync::LazyLock;
 
 /// Returns the meaning of a word among the statements of a dataset; at least three letters.
 pub fn find(word: &str) -> Meaning {
     if word.len() < 3 && !word.eq_ignore_ascii_case("IC") {
         return Meaning::Unknown;
     }
-    meaning(word, STATEMENTS.iter().map(|s| s.keyword()))
+    let first = word.as_bytes()[0].to_ascii_uppercase();
+    let places = BY_LETTER.get(usize::from(first)).into_iter().flatten();
+    meaning_among(word, places.map(|&k| (k, STATEMENTS[k].keyword())))
 }
+
+/// By letter the places of the statements with a spelling that begins with it.
+static BY_LETTER: LazyLock<[Vec<usize>; 128]> = LazyLock::new(|| {
+    let mut all = [const { Vec::new() }; 128];
+    for (k, statement) in STATEMENTS.iter().enumerate() {
+        for spelling in statement.keyword().split('|') {
+            let first = spelling.bytes().next().unwrap_or(0).to_ascii_uppercase();
+            let of = &mut all[usize::from(first & 127)];
+            if of.last() != Some(&k) {
+                of.push(k);
+            }
+        }
+    }
+    all
+});
 
 const REAL: Kind = Kind::Real { angle: false };
 const ANGLE: Kind = Kind::Real { angle: true };

@@ -16,8 +16,10 @@
 //! however narrow the peak is in time or on the way.
 
 use super::builder::Builder;
+use super::code::Code;
 use super::node::{Node, Value};
 use super::operation::{BinaryOp, UnaryOp};
+use super::run::Program;
 use crate::expr::spline::Piecewise;
 use crate::scalar::Table;
 use std::collections::BTreeSet;
@@ -41,6 +43,29 @@ pub(crate) struct Peaks {
     pub logarithms: Vec<Value>,
     /// angles whose sines and cosines these are made of
     pub angles: Vec<Value>,
+}
+
+impl Program {
+    /// Returns whether it has operations that may be narrow; most expressions have none.
+    pub(crate) fn may_peak(&self) -> bool {
+        self.core()
+            .code
+            .iter()
+            .any(|instruction| match instruction.code {
+                Code::Unary(op) => matches!(
+                    op,
+                    UnaryOp::Exp | UnaryOp::Cosh | UnaryOp::Tanh | UnaryOp::Atan | UnaryOp::Tan
+                ),
+                Code::Binary(op) => matches!(op, BinaryOp::Pow | BinaryOp::Div),
+                Code::Whole(_) | Code::HalfPower(_) | Code::Lookup { .. } => true,
+                Code::Compare(_)
+                | Code::Select
+                | Code::CompareSelect(_)
+                | Code::If
+                | Code::Call(..)
+                | Code::Partial(..) => false,
+            })
+    }
 }
 
 impl Builder {
