@@ -1039,3 +1039,28 @@ pub static STATEMENTS: &[&dyn Statement] = &[
     &Opaque { kind: ElementKind::Ptsf },
     &Opaque { kind: ElementKind::Sfsf },
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::row::meaning;
+
+    #[test]
+    fn a_word_is_found_among_the_names_that_begin_as_it_does_as_among_all() {
+        let spellings = STATEMENTS.iter().flat_map(|s| s.keyword().split('|'));
+        for spelling in spellings.chain(["NOTHING", "éa", "1/2", "|ab"]) {
+            for (end, _) in spelling
+                .char_indices()
+                .skip(3)
+                .chain([(spelling.len(), ' ')])
+            {
+                for word in [spelling[..end].to_string(), spelling[..end].to_lowercase()] {
+                    let among_all = meaning(&word, STATEMENTS.iter().map(|s| s.keyword()));
+                    if word.len() >= 3 {
+                        assert_eq!(find(&word), among_all, "{word}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -126,4 +126,19 @@ mod tests {
         assert_eq!(text, Text::from("2*TIME"));
         assert_eq!(copy.expression().unwrap().eval(&[("TIME", 3.0)]), Ok(6.0));
     }
+
+    #[test]
+    fn a_formula_is_a_number_where_its_value_reads_nothing() {
+        let constant = |text: &str| crate::model::Formula::text(text).constant();
+        for (text, number) in [
+            ("2*3", Some(6.0)),
+            ("IF(-1: 2, TIME, DX(1,2))", Some(2.0)),
+            ("IF(1: 2, 0, TIME)", None),
+            ("0*TIME", None),
+            ("SIN(DX(1,2))", None),
+            ("1/0", None),
+        ] {
+            assert_eq!(constant(text), number, "{text}");
+        }
+    }
 }

@@ -31,7 +31,7 @@ pub(super) fn doubts(dialect: Dialect, text: &str) -> Vec<Doubt> {
     found
 }
 
-/// Returns whether a text has a mark that may be doubted: an exclamation mark, or a D behind a digit.
+/// Returns whether a text has a mark that may be doubted: an exclamation mark, a D behind a digit.
 fn may_doubt(text: &str) -> bool {
     let mut last = b' ';
     text.bytes().any(|byte| {

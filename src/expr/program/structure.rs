@@ -328,6 +328,27 @@ mod tests {
     }
 
     #[test]
+    fn a_program_with_other_inputs_is_the_one_made_anew_to_the_bit() {
+        for seed in 0..100 {
+            let structures = Structures::default();
+            for first in [0, 7, 2, 7] {
+                let (mut builder, outputs) = recorded(seed, &[2.0, 3.0, 0.3, 0.7]);
+                builder.inputs = vec![Input::Slot(first), Input::Slot(first + 1)];
+                // some programs read one of the two
+                for outputs in [&outputs[..], &outputs[..1]] {
+                    let looking = structures.look_too();
+                    let program = builder.finish(outputs);
+                    drop(looking);
+                    let (alone, _) = schedule::program(&builder, outputs, None);
+                    assert_eq!(program.inputs(), builder.finish(outputs).inputs(), "{seed}");
+                    assert_eq!(program.inputs(), alone.inputs(), "{seed}");
+                    assert_eq!(bits(&program, None), bits(&alone, None), "{seed}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn structures_nobody_asks_for_are_forgotten() {
         let structures = Structures::default();
         let (builder, outputs) = recorded(1, &[2.0, 3.0, 0.3, 0.7]);
