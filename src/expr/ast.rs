@@ -129,6 +129,7 @@ pub struct Ast {
 impl Ast {
     /// Returns whether its value needs one of the host for any numbers; false where an IF may pass
     /// it by.
+    #[cfg(feature = "solver")]
     pub(crate) fn certainly_reads(&self) -> bool {
         let has_if = self.nodes.iter().any(|n| matches!(n, Node::If { .. }));
         let reads = |node: &Node| match node {
