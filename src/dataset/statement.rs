@@ -21,19 +21,37 @@
 use super::lens::*;
 use super::row::{
     Angle, Argument, Binding, Element, Lens, Meaning, Numbered, Opaque, Plain, Routine, Single,
-    Statement, canonical, meaning,
+    Statement, canonical, meaning_among,
 };
 use super::value::{Always, Field, Kind, Number, Value};
 use crate::model::*;
 use crate::physics::joint::Displacements;
+use std::sync::LazyLock;
 
 /// Returns the meaning of a word among the statements of a dataset; at least three letters.
 pub fn find(word: &str) -> Meaning {
     if word.len() < 3 && !word.eq_ignore_ascii_case("IC") {
         return Meaning::Unknown;
     }
-    meaning(word, STATEMENTS.iter().map(|s| s.keyword()))
+    let first = word.as_bytes()[0].to_ascii_uppercase();
+    let places = BY_LETTER.get(usize::from(first)).into_iter().flatten();
+    meaning_among(word, places.map(|&k| (k, STATEMENTS[k].keyword())))
 }
+
+/// By letter the places of the statements with a spelling that begins with it.
+static BY_LETTER: LazyLock<[Vec<usize>; 128]> = LazyLock::new(|| {
+    let mut all = [const { Vec::new() }; 128];
+    for (k, statement) in STATEMENTS.iter().enumerate() {
+        for spelling in statement.keyword().split('|') {
+            let first = spelling.bytes().next().unwrap_or(0).to_ascii_uppercase();
+            let of = &mut all[usize::from(first & 127)];
+            if of.last() != Some(&k) {
+                of.push(k);
+            }
+        }
+    }
+    all
+});
 
 const REAL: Kind = Kind::Real { angle: false };
 const ANGLE: Kind = Kind::Real { angle: true };
@@ -1021,3 +1039,28 @@ pub static STATEMENTS: &[&dyn Statement] = &[
     &Opaque { kind: ElementKind::Ptsf },
     &Opaque { kind: ElementKind::Sfsf },
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::row::meaning;
+
+    #[test]
+    fn a_word_is_found_among_the_names_that_begin_as_it_does_as_among_all() {
+        let spellings = STATEMENTS.iter().flat_map(|s| s.keyword().split('|'));
+        for spelling in spellings.chain(["NOTHING", "éa", "1/2", "|ab"]) {
+            for (end, _) in spelling
+                .char_indices()
+                .skip(3)
+                .chain([(spelling.len(), ' ')])
+            {
+                for word in [spelling[..end].to_string(), spelling[..end].to_lowercase()] {
+                    let among_all = meaning(&word, STATEMENTS.iter().map(|s| s.keyword()));
+                    if word.len() >= 3 {
+                        assert_eq!(find(&word), among_all, "{word}");
+                    }
+                }
+            }
+        }
+    }
+}

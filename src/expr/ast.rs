@@ -127,6 +127,19 @@ pub struct Ast {
 }
 
 impl Ast {
+    /// Returns whether its value needs one of the host for any numbers; false where an IF may pass
+    /// it by.
+    #[cfg(feature = "solver")]
+    pub(crate) fn certainly_reads(&self) -> bool {
+        let has_if = self.nodes.iter().any(|n| matches!(n, Node::If { .. }));
+        let reads = |node: &Node| match node {
+            Node::Constant(Constant::Time | Constant::Mode) => true,
+            Node::Call { callee, .. } => matches!(callee, Callee::Measure(_)),
+            _ => false,
+        };
+        !has_if && self.nodes.iter().any(reads)
+    }
+
     /// Returns the node at an index.
     pub fn node(&self, ix: NodeIx) -> &Node {
         &self.nodes[ix as usize]

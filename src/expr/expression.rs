@@ -121,10 +121,13 @@ impl Expr {
     /// A constant part without a value.
     pub(crate) fn from_ast(text: &str, ast: Arc<Ast>) -> Result<Self, Diagnostic> {
         walk::check_constants(&ast).map_err(|trouble| trouble.diagnostic(text))?;
-        Ok(Self {
-            text: text.to_string(),
-            ast,
-        })
+        Ok(Self::from_sound_ast(text, ast))
+    }
+
+    /// Takes a tree that was made of a text, and whose constant parts have values.
+    pub(crate) fn from_sound_ast(text: &str, ast: Arc<Ast>) -> Self {
+        let text = text.to_string();
+        Self { text, ast }
     }
 
     /// Returns the text it was read from.

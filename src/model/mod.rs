@@ -101,7 +101,12 @@ impl Formula {
         };
         // most of them are plain, and asked for often
         let plain = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
-        plain.or_else(|| text.expression().ok()?.eval(&[]).ok())
+        plain.or_else(|| {
+            if text.ast().ok()?.certainly_reads() {
+                return None;
+            }
+            text.expression().ok()?.eval(&[]).ok()
+        })
     }
 
     /// Line and column in the file of a byte of the expression; `None` when it was not read from a

@@ -88,7 +88,7 @@ impl Model {
             let Formula::Expression { text, .. } = owned.formula else {
                 return false;
             };
-            let targets = text.expression().map(|expr| named(&expr));
+            let targets = text.sound_ast().map(|ast| named(ast));
             targets.is_ok_and(|all| all.iter().any(|(_, target)| *target == id))
         });
         let mut all: Vec<ElementId> = by_number

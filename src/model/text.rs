@@ -6,7 +6,7 @@ use crate::expr::ast::{Ast, Dialect};
 use crate::expr::compile::Compiler;
 use crate::expr::interpolation::Bindings;
 use crate::expr::program::Program;
-use crate::expr::{Expr, Profile, parse};
+use crate::expr::{Expr, Profile, parse, walk};
 use std::fmt;
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
@@ -20,6 +20,8 @@ pub struct Text(Arc<Parsed>);
 struct Parsed {
     text: String,
     ast: OnceLock<Result<Arc<Ast>, Diagnostic>>,
+    /// whether its constant parts have values
+    constants: OnceLock<Result<(), Diagnostic>>,
     program: OnceLock<Option<Program>>,
 }
 
@@ -53,7 +55,20 @@ impl Text {
     /// # Errors
     /// The first mistake in the text, or a constant part without a value.
     pub fn expression(&self) -> Result<Expr, Diagnostic> {
-        Expr::from_ast(self, Arc::clone(self.ast()?))
+        let ast = self.sound_ast()?;
+        Ok(Expr::from_sound_ast(self, Arc::clone(ast)))
+    }
+
+    /// Returns the syntax tree of an expression whose constant parts have values.
+    ///
+    /// # Errors
+    /// As [`Text::expression`].
+    pub(crate) fn sound_ast(&self) -> Result<&Arc<Ast>, Diagnostic> {
+        let ast = self.ast()?;
+        let check = || walk::check_constants(ast).map_err(|trouble| trouble.diagnostic(self));
+        let checked = self.0.constants.get_or_init(check);
+        checked.as_ref().map_err(Clone::clone)?;
+        Ok(ast)
     }
 }
 
@@ -110,5 +125,20 @@ mod tests {
         assert!(Arc::ptr_eq(&tree, copy.ast().unwrap()));
         assert_eq!(text, Text::from("2*TIME"));
         assert_eq!(copy.expression().unwrap().eval(&[("TIME", 3.0)]), Ok(6.0));
+    }
+
+    #[test]
+    fn a_formula_is_a_number_where_its_value_reads_nothing() {
+        let constant = |text: &str| crate::model::Formula::text(text).constant();
+        for (text, number) in [
+            ("2*3", Some(6.0)),
+            ("IF(-1: 2, TIME, DX(1,2))", Some(2.0)),
+            ("IF(1: 2, 0, TIME)", None),
+            ("0*TIME", None),
+            ("SIN(DX(1,2))", None),
+            ("1/0", None),
+        ] {
+            assert_eq!(constant(text), number, "{text}");
+        }
     }
 }

@@ -307,6 +307,13 @@ impl Sparse {
         for (x, row) in x.iter_mut().zip(&self.row) {
             *x = b[*row as usize] * scale[*row as usize];
         }
+        // equations of one unknown each
+        if self.l_row.is_empty() && self.u_row.is_empty() {
+            for ((x, inverse), column) in x.iter_mut().zip(&self.inverse).zip(&self.column) {
+                b[*column as usize] = std::mem::take(x) * inverse;
+            }
+            return;
+        }
         for k in 0..self.n {
             let xk = x[k];
             let l = self.l_start[k] as usize..self.l_start[k + 1] as usize;

@@ -164,7 +164,7 @@ impl<'s, S: Scalar> ArticulatedFactor<'s, S> {
     /// Eliminates all free coordinates from the leaves.
     pub fn new(scene: &'s Scene, states: &'s [LinkState<S>]) -> Self {
         let mut inertia = Inertia::of_links(scene);
-        let of_link = free_of_links(scene);
+        let (of_link, idle) = (free_of_links(scene), scene.idle_links());
         let is_free = |k: &usize| scene.freedoms[*k].v.is_some();
         let free = (0..scene.freedoms.len()).filter(is_free).collect();
         let mut u = vec![Wrench::zero(); scene.freedoms.len()];
@@ -178,7 +178,7 @@ impl<'s, S: Scalar> ArticulatedFactor<'s, S> {
                 u[k] = w;
                 inverse_d[k] = r;
             }
-            if let Some(parent) = scene.links[l].parent {
+            if let Some(parent) = scene.links[l].parent.filter(|_| !idle[l]) {
                 let shown = inertia[l];
                 inertia[parent].add_carried(&states[l].X_PL, &shown);
             }

@@ -16,7 +16,7 @@ use super::{ConstraintElement, CountedAngle, Entry, LinkMotion, RowKind, Scene, 
 use crate::diagnostic::{Diagnostic, Error, Severity};
 use crate::expr::interpolation::Bindings;
 use crate::expr::measures::Measure;
-use crate::expr::program::Input;
+use crate::expr::program::{Input, Structures};
 use crate::model::{ArrayKind, ElementKind, Model, Text};
 use crate::physics::joint::Tie;
 use crate::space::Vec3;
@@ -81,6 +81,7 @@ impl Scene {
             hooks: &options.hooks,
             zero_user: options.zero_user,
             shells: &options.shells,
+            structures: Structures::default(),
         };
         for d in std::mem::take(&mut left_out.told) {
             match d.severity {
@@ -192,6 +193,8 @@ pub(super) struct Builder<'m> {
     pub(super) hooks: &'m [HookName],
     pub(super) zero_user: bool,
     pub(super) shells: &'m BTreeMap<u32, Result<Shell, String>>,
+    /// expressions that differ in their numbers and in what they ask for share their code
+    pub(super) structures: Structures,
 }
 
 impl<'m> Builder<'m> {

@@ -154,9 +154,10 @@ fn is_calm(scene: &Scene, formula: &Formula) -> bool {
     }
     let mut recorder = Recorder::new(Folding::Strict);
     let outputs = formula.program.record(&mut recorder);
+    let may_peak = formula.program.may_peak();
     recorder.switching(&outputs).is_empty()
         && recorder.timed_breaks(&outputs, Input::Time).is_empty()
-        && recorder.peaks(&outputs).logarithms.is_empty()
+        && (!may_peak || recorder.peaks(&outputs).logarithms.is_empty())
 }
 
 /// Returns whether a formula is read by whoever asks for it, and not only by those who read its

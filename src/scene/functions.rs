@@ -38,7 +38,10 @@ impl Builder<'_> {
     }
 
     pub(super) fn compiled(&mut self, c: &mut Compiler, owner: &Asker, text: &Text) -> usize {
-        let compiled = match super::formula::compile(text, &self.bindings) {
+        let looking = self.structures.look_too();
+        let compiled = super::formula::compile(text, &self.bindings);
+        drop(looking);
+        let compiled = match compiled {
             Ok(compiled) => compiled,
             Err(mut d) => {
                 d = d.element(owner);
@@ -75,9 +78,13 @@ impl Builder<'_> {
 
     /// A place for a number from outside.
     pub(super) fn supply(&mut self, what: ExternalInput) -> usize {
+        let place = self.scene.external_inputs.len();
+        if let ExternalInput::Input(formula) = what {
+            self.scene.plant_inputs.insert(formula, place);
+        }
         self.scene.external_inputs.push(what);
         self.scene.layout.n_external = self.scene.external_inputs.len();
-        self.scene.external_inputs.len() - 1
+        place
     }
 
     /// `n` numbers that a closure of the user's computes for an element, as formulas; `reads`: what

@@ -449,6 +449,10 @@ pub struct Scene {
     pub mode: f64,
     /// places of unknowns
     pub layout: Layout,
+    /// formula → place among the numbers from outside of what is added to it
+    pub(crate) plant_inputs: BTreeMap<usize, usize>,
+    /// user's DIFF number → its differential equation
+    pub(crate) diffs: BTreeMap<u32, usize>,
     /// identities of the states, with those downstream of the mechanism
     pub unknowns: State<Vec<UnknownId>>,
     /// formulas that the states downstream read and nothing of the mechanism does   (n_formulas;
@@ -476,6 +480,14 @@ pub struct Scene {
     pub length_unit: String,
 }
 
+impl Link {
+    /// Returns whether it has neither mass nor inertia of its own.
+    pub(in crate::scene) fn is_massless(&self) -> bool {
+        let none = |row: &[f64; 3]| *row == [0.0; 3];
+        self.mass == 0.0 && none(&self.moment.0) && self.inertia.0.iter().all(none)
+    }
+}
+
 impl Scene {
     /// Returns how many groups of links move that nothing but forces can couple: links with what
     /// carries them, and those that constraints join.
@@ -498,6 +510,20 @@ impl Scene {
             }
         }
         joined.iter().enumerate().filter(|(k, j)| k == *j).count()
+    }
+
+    /// Returns which links show no inertia to what carries them, whatever moves: rigid ones without
+    /// mass that carry nothing else   (n_links)
+    pub(in crate::scene) fn idle_links(&self) -> Vec<bool> {
+        let mut idle: Vec<bool> = (self.links.iter())
+            .map(|l| matches!(l.motion, LinkMotion::Rigid) && l.is_massless())
+            .collect();
+        for l in (0..idle.len()).rev() {
+            if let (Some(parent), false) = (self.links[l].parent, idle[l]) {
+                idle[parent] = false;
+            }
+        }
+        idle
     }
 
     /// Most freedoms on a way from ground to a leaf.
@@ -550,8 +576,7 @@ impl Scene {
 
     /// Returns the differential equation of a DIFF by the user's number: its index.
     pub fn differential(&self, diff: u32) -> Option<usize> {
-        let id = DifferentialId::diff(diff);
-        self.differentials.iter().position(|d| d.id == id)
+        self.diffs.get(&diff).copied()
     }
 
     /// Returns the names of the integrator's unknowns in their order, for messages and results.

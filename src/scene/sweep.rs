@@ -37,6 +37,11 @@ impl<S: Scalar> Wrench<S> {
             torque: Vec3::zero(),
         }
     }
+
+    fn is_known_zero(&self) -> bool {
+        let mut all = self.force.0.iter().chain(&self.torque.0);
+        all.all(Scalar::is_known_zero)
+    }
 }
 
 /// Pose, velocity and acceleration of a link.
@@ -96,6 +101,10 @@ pub fn outward<S: Scalar>(scene: &Scene, at: &Coordinates<'_, S>) -> Vec<LinkSta
     for link in &scene.links {
         let parent = link.parent.map_or(ground, |p| states[p]);
         let mut X_PL = Frame::constant(link.placement);
+        if matches!(link.motion, LinkMotion::Rigid) {
+            states.push(carried_rigidly(&parent, X_PL));
+            continue;
+        }
         let jet = |c: usize| at.of(scene.coordinates[c].source);
         let along = |axis: usize, x: S| {
             let mut e = Vec3::zero();
@@ -105,7 +114,7 @@ pub fn outward<S: Scalar>(scene: &Scene, at: &Coordinates<'_, S>) -> Vec<LinkSta
         let (mut w_own, mut v_own) = (Vec3::zero(), Vec3::zero());
         let (mut alpha_own, mut a_own) = (Vec3::zero(), Vec3::zero());
         match link.motion {
-            LinkMotion::Rigid => {}
+            LinkMotion::Rigid => unreachable!("a rigid link has no motion of its own"),
             LinkMotion::Slide {
                 axis,
                 sign,
@@ -154,6 +163,21 @@ pub fn outward<S: Scalar>(scene: &Scene, at: &Coordinates<'_, S>) -> Vec<LinkSta
         });
     }
     states
+}
+
+/// The state of a link that its parent carries at a place for ever.
+fn carried_rigidly<S: Scalar>(parent: &LinkState<S>, X_PL: Frame<S>) -> LinkState<S> {
+    let (R, p) = (X_PL.rotation, X_PL.position);
+    let nothing = Vec3::zero();
+    let carried = parent.a + parent.alpha.cross(p) + parent.w.cross(parent.w.cross(p));
+    LinkState {
+        X_PL,
+        X_GL: parent.X_GL.compose(&X_PL),
+        w: R.apply_transposed(parent.w) + nothing,
+        v: R.apply_transposed(parent.v + parent.w.cross(p)) + nothing,
+        alpha: R.apply_transposed(parent.alpha) + nothing,
+        a: R.apply_transposed(carried) + nothing,
+    }
 }
 
 /// Pose of a marker in ground.
@@ -222,6 +246,12 @@ pub fn inward<S: Scalar>(
         .zip(states)
         .zip(applied)
         .map(|((link, s), load)| {
+            if link.is_massless() {
+                return Wrench {
+                    force: Vec3::zero() - load.force,
+                    torque: Vec3::zero() - load.torque,
+                };
+            }
             let m = S::constant(link.mass);
             let mc = Vec3::constant(link.moment);
             let inertia = Mat3::constant(link.inertia);
@@ -241,7 +271,9 @@ pub fn inward<S: Scalar>(
 /// Adds to the wrench of each link those of all that it carries.
 pub fn gather<S: Scalar>(scene: &Scene, states: &[LinkState<S>], wrenches: &mut [Wrench<S>]) {
     for l in (0..scene.links.len()).rev() {
-        if let Some(p) = scene.links[l].parent {
+        if let Some(p) = scene.links[l].parent
+            && !wrenches[l].is_known_zero()
+        {
             let up = to_parent(&states[l].X_PL, wrenches[l]);
             wrenches[p].force += up.force;
             wrenches[p].torque += up.torque;
@@ -300,8 +332,9 @@ pub fn mass_matrix<S: Scalar>(scene: &Scene, states: &[LinkState<S>]) -> Vec<Vec
         .iter()
         .map(|l| Mat3::constant(l.inertia))
         .collect();
+    let idle = scene.idle_links();
     for l in (0..n).rev() {
-        let Some(parent) = scene.links[l].parent else {
+        let Some(parent) = scene.links[l].parent.filter(|_| !idle[l]) else {
             continue;
         };
         let X = &states[l].X_PL;

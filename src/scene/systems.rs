@@ -71,6 +71,7 @@ impl Builder<'_> {
         for (id, d) in model.active(ElementKind::Diff, &model.differentials) {
             let name = ElementKind::Diff.id(id);
             let formula = self.formula(c, &Asker::argument(name, "FUNCTION"), &d.function);
+            self.scene.diffs.insert(id, self.scene.differentials.len());
             self.scene.differentials.push(SceneDifferential {
                 id: DifferentialId::diff(id),
                 state: None,

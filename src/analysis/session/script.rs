@@ -86,6 +86,11 @@ fn found(session: &Session, name: &str) -> Result<Vec<u8>, Diagnostic> {
     })
 }
 
+/// Returns whether a command changes the model.
+fn changes(command: &Command) -> bool {
+    matches!(command, Command::Change(_) | Command::Activate { .. })
+}
+
 /// Obeys commands until one of them ends the run; how the last simulation ended.
 ///
 /// `before` is called before each simulation with its start and its end.
@@ -105,7 +110,7 @@ pub fn obey(
     });
     session.will_change(changed);
     session.run.has_phases |= has_phases(steps);
-    for step in steps {
+    for (k, step) in steps.iter().enumerate() {
         session.run.log.push(Event::Command(step.text.clone()));
         let located = |d: Diagnostic| located(d, step);
         match &step.command {
@@ -118,8 +123,12 @@ pub fn obey(
             }
             Command::Change(_) | Command::Activate { .. } => {
                 let applied = session.model.apply(&step.command);
+                // once for all changes up to the next command that reads the model
+                let goes_on = steps.get(k + 1).is_some_and(|next| changes(&next.command));
+                if applied.is_err() || !goes_on {
+                    session.model_changed();
+                }
                 applied.map_err(|e| e.map(located))?;
-                session.model_changed();
             }
             Command::Stop => break,
             Command::Show(_) => {}

@@ -157,6 +157,9 @@ fn acts(scene: &Scene, f: usize) -> bool {
 
 /// Returns whether an expression has narrow factors of its own.
 fn is_narrow(program: &Program) -> bool {
+    if !program.may_peak() {
+        return false;
+    }
     let mut builder = Builder::new(Folding::Strict);
     let outputs = program.record(&mut builder);
     !builder.peaks(&outputs).logarithms.is_empty()

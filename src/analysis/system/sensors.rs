@@ -72,17 +72,16 @@ impl Sensors {
                 (scene.sensors.iter()).map(|s| s.evaluate.map_or(zero, |f| at.formula(f)));
             watched.chain(evaluated).collect()
         })?;
-        let place = |k: usize| {
-            let own = scene
-                .external_inputs
-                .iter()
-                .position(|s| *s == ExternalInput::Sensor(k));
-            scene.layout.external_at(own.unwrap_or(0))
-        };
+        let mut places = vec![scene.layout.external_at(0); n];
+        for (place, input) in scene.external_inputs.iter().enumerate() {
+            if let ExternalInput::Sensor(k) = *input {
+                places[k] = scene.layout.external_at(place);
+            }
+        }
         Ok(Self {
             recording: Some(Recording::new(program)),
             armed: vec![false; n],
-            places: (0..n).map(place).collect(),
+            places,
             beyond: Vec::new(),
         })
     }

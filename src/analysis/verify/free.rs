@@ -14,6 +14,7 @@ use crate::scene::equations::Equations;
 use crate::scene::programs::weights;
 use crate::scene::{Scene, Source};
 use crate::space::{MarkerState, Vec3};
+use std::cell::OnceCell;
 
 /// Motion of a part in a free direction, relative to the largest, below which it does not move.
 const LEAST_MOTION: f64 = 1e-7;
@@ -48,6 +49,91 @@ pub struct Free {
     pub rates: Vec<f64>,
 }
 
+/// A part's centre, and its state.
+type Placed = (Vec3<f64>, MarkerState<f64>);
+
+/// The free directions at a position; each is put in words when that is asked for.
+pub(super) struct Directions<'a> {
+    scene: Configured<'a>,
+    model: &'a Model,
+    t: f64,
+    q: &'a [f64],
+    x: &'a [f64],
+    /// coordinate of the unknown of each direction   (n_directions)
+    own: Vec<usize>,
+    /// rates of all unknowns, that of its own one   (n_directions)
+    pub rates: Vec<Vec<f64>>,
+    /// where all parts are when nothing moves but by itself
+    still: OnceCell<Vec<Placed>>,
+}
+
+impl<'a> Directions<'a> {
+    /// Finds all of them.
+    pub fn of(scene: Configured<'a>, model: &'a Model, t: f64, q: &'a [f64], x: &'a [f64]) -> Self {
+        let w = weights(&scene);
+        let (_, gradient, _) = assemble::rows_at(scene, t, q, x);
+        let rows = assemble::scaled_rows(&gradient, &w);
+        let rank = Rank::of(rows.iter().map(Vec::as_slice), w.len(), assemble::DEPENDENT);
+        let mut owner = vec![0; w.len()];
+        for (c, coordinate) in scene.coordinates.iter().enumerate() {
+            if let Source::Free { v, .. } = coordinate.source {
+                owner[v] = c;
+            }
+        }
+        let of_direction = |(own, direction): (usize, Vec<f64>)| {
+            let one = w[own].sqrt();
+            let rates = direction.iter().zip(&w).map(|(d, w)| d * w.sqrt() / one);
+            (owner[own], rates.collect())
+        };
+        let (own, rates) = rank.free_motions().into_iter().map(of_direction).unzip();
+        Self {
+            scene,
+            model,
+            t,
+            q,
+            x,
+            own,
+            rates,
+            still: OnceCell::new(),
+        }
+    }
+
+    /// Returns the unknown whose rate is one in a direction.
+    pub fn unknown(&self, k: usize) -> Subject {
+        self.scene.coordinates[self.own[k]].id.into()
+    }
+
+    /// Places all parts at rates of the unknowns.
+    fn placed(&self, v: &[f64]) -> Vec<Placed> {
+        let numbers = assemble::numbers(self.scene, self.t, self.q, v, self.x);
+        let at = Equations::new(self.scene, &numbers);
+        let place = |k: usize| {
+            let state = at.part(k, false);
+            (centre(&self.scene, self.model, k, &state), state)
+        };
+        (0..self.scene.parts.len()).map(place).collect()
+    }
+
+    /// Puts a direction in words.
+    pub fn described(&self, k: usize) -> Free {
+        let rates = &self.rates[k];
+        let still = (self.still).get_or_init(|| self.placed(&vec![0.0; rates.len()]));
+        let coordinate = &self.scene.coordinates[self.own[k]];
+        let moving = self.placed(rates);
+        let parts = moving_parts(&self.scene, coordinate.link, moving, still);
+        let words = match parts.split_first() {
+            None => format!("{} changes and moves no part", coordinate.id),
+            Some((first, rest)) => sentence(self.model, first, rest),
+        };
+        Free {
+            unknown: coordinate.id.into(),
+            parts,
+            words,
+            rates: rates.clone(),
+        }
+    }
+}
+
 /// Finds all free directions at a position.
 pub(super) fn motions(
     scene: Configured<'_>,
@@ -56,57 +142,12 @@ pub(super) fn motions(
     q: &[f64],
     x: &[f64],
 ) -> Vec<Free> {
-    let w = weights(&scene);
-    let (_, gradient, _) = assemble::rows_at(scene, t, q, x);
-    let rows = assemble::scaled_rows(&gradient, &w);
-    let rank = Rank::of(rows.iter().map(Vec::as_slice), w.len(), assemble::DEPENDENT);
-    let mut owner = vec![0; w.len()];
-    for (c, coordinate) in scene.coordinates.iter().enumerate() {
-        if let Source::Free { v, .. } = coordinate.source {
-            owner[v] = c;
-        }
-    }
-    let moving = |v: &[f64]| -> Vec<(Vec3<f64>, MarkerState<f64>)> {
-        let numbers = assemble::numbers(scene, t, q, v, x);
-        let at = Equations::new(scene, &numbers);
-        (0..scene.parts.len())
-            .map(|k| {
-                let state = at.part(k, false);
-                (centre(&scene, model, k, &state), state)
-            })
-            .collect()
-    };
-    let still = moving(&vec![0.0; w.len()]);
-    let motions = rank.free_motions().into_iter();
-    motions
-        .map(|(own, direction)| {
-            let one = w[own].sqrt();
-            let v: Vec<f64> = (direction.iter().zip(&w))
-                .map(|(d, w)| d * w.sqrt() / one)
-                .collect();
-            let coordinate = &scene.coordinates[owner[own]];
-            let parts = moving_parts(&scene, coordinate.link, moving(&v), &still);
-            let words = match parts.split_first() {
-                None => format!("{} changes and moves no part", coordinate.id),
-                Some((first, rest)) => sentence(model, first, rest),
-            };
-            Free {
-                unknown: coordinate.id.into(),
-                parts,
-                words,
-                rates: v,
-            }
-        })
-        .collect()
+    let all = Directions::of(scene, model, t, q, x);
+    (0..all.rates.len()).map(|k| all.described(k)).collect()
 }
 
 /// Returns the parts that move against how they are at rest, those on link `first` first.
-fn moving_parts(
-    scene: &Scene,
-    first: usize,
-    moving: Vec<(Vec3<f64>, MarkerState<f64>)>,
-    still: &[(Vec3<f64>, MarkerState<f64>)],
-) -> Vec<Moving> {
+fn moving_parts(scene: &Scene, first: usize, moving: Vec<Placed>, still: &[Placed]) -> Vec<Moving> {
     let mut parts = Vec::new();
     let mut largest = 0.0_f64;
     for (k, ((p, state), (_, rest))) in moving.into_iter().zip(still).enumerate() {

@@ -101,9 +101,9 @@ pub fn idle(model: &Model) -> Vec<Idle> {
 /// Returns the elements that a function names.
 fn read_by(formula: &Formula) -> Vec<ElementId> {
     match formula {
-        Formula::Expression { text, .. } => match text.expression() {
-            Ok(expression) => {
-                let named = references::named(&expression).into_iter();
+        Formula::Expression { text, .. } => match text.sound_ast() {
+            Ok(ast) => {
+                let named = references::named(ast).into_iter();
                 named.map(|(_, id)| id).collect()
             }
             Err(_) => Vec::new(),

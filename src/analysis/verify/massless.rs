@@ -12,7 +12,7 @@
 //! where (1), scaled to a unit diagonal, is singular: two arms without mass stretched out towards
 //! the same ball.
 
-use super::free::{self, Free, Moving};
+use super::free::{Directions, Free, Moving};
 use crate::analysis::start::assemble;
 use crate::diagnostic::{Diagnostic, Subject};
 use crate::model::Model;
@@ -51,13 +51,12 @@ pub(crate) fn massless(
     if !possible(&scene, model) {
         return Vec::new();
     }
-    let found = free::motions(scene, model, t, q, x);
-    let n = found.len();
+    let found = Directions::of(scene, model, t, q, x);
+    let n = found.rates.len();
     let still = twists(scene, t, q, &vec![0.0; scene.layout.n_v], x);
-    let all: Vec<Vec<[Vec3<f64>; 2]>> = found
-        .iter()
-        .map(|f| {
-            let moving = twists(scene, t, q, &f.rates, x);
+    let all: Vec<Vec<[Vec3<f64>; 2]>> = (found.rates.iter())
+        .map(|rates| {
+            let moving = twists(scene, t, q, rates, x);
             let less = |(a, b): (&[Vec3<f64>; 2], &[Vec3<f64>; 2])| [a[0] - b[0], a[1] - b[1]];
             moving.iter().zip(&still).map(less).collect()
         })
@@ -83,7 +82,7 @@ pub(crate) fn massless(
     let weightless = |a: usize| own[a] <= NOTHING * mass * size(a);
     let mut out: Vec<Diagnostic> = (0..n)
         .filter(|&a| weightless(a))
-        .map(|a| said(model, &found[a]))
+        .map(|a| said(model, &found.described(a)))
         .collect();
     let rest: Vec<usize> = (0..n).filter(|&a| !weightless(a)).collect();
     if rest.is_empty() {
@@ -104,7 +103,7 @@ pub(crate) fn massless(
         let largest = vector.amax();
         let names: Vec<String> = (vector.iter().zip(&rest))
             .filter(|(c, _)| c.abs() > 0.1 * largest)
-            .map(|(_, &a)| found[a].unknown.to_string())
+            .map(|(_, &a)| found.unknown(a).to_string())
             .collect();
         let at = rest[vector.iamax()];
         let what = format!(
@@ -112,7 +111,7 @@ pub(crate) fn massless(
             names.join(", ")
         );
         out.push(advised(
-            Diagnostic::error("no_mass", what).element(element(&found[at])),
+            Diagnostic::error("no_mass", what).element(element(&found.described(at))),
         ));
     }
     out

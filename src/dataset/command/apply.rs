@@ -78,21 +78,22 @@ impl Model {
         ids: &[u32],
         range: Option<[u32; 2]>,
     ) -> Result<(), Error> {
-        let known = self.numbers(kind);
-        let missing = |id: &&u32| !known.contains(id);
         let mut out = Vec::new();
-        for &id in ids.iter().filter(missing) {
+        for &id in ids.iter().filter(|id| !self.has(kind.id(**id))) {
             let message = format!("{} does not exist", kind.id(id));
             let mut d = Diagnostic::error(Cause::UnknownElement, message);
-            d.help.extend(near_ids(id, known.iter().copied()));
+            d.help.extend(near_ids(id, self.numbers(kind).into_iter()));
             out.push(d);
         }
         if !out.is_empty() {
             return Err(out.into());
         }
-        let in_range = |id: &u32| range.is_some_and(|[a, b]| (a..=b).contains(id));
-        let of_range = known.iter().copied().filter(in_range);
-        for id in ids.iter().copied().chain(of_range) {
+        // most commands name numbers, and there may be one for each element
+        let of_range = range.map(|[a, b]| {
+            let all = self.numbers(kind).into_iter();
+            all.filter(move |id| (a..=b).contains(id))
+        });
+        for id in ids.iter().copied().chain(of_range.into_iter().flatten()) {
             let key = kind.id(id);
             if on {
                 self.inactive.remove(&key);

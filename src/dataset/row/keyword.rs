@@ -28,21 +28,30 @@ pub enum Meaning {
 /// Which of the names a word means: itself, else the only one it begins, else the first whose
 /// shortest form it has.
 pub fn meaning<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Meaning {
+    meaning_among(word, names.enumerate())
+}
+
+/// As [`meaning`], of some of the names with their places.
+pub(in crate::dataset) fn meaning_among<'a>(
+    word: &str,
+    names: impl Iterator<Item = (usize, &'a str)>,
+) -> Meaning {
     let word = word.as_bytes();
     let Some(first) = word.first() else {
         return Meaning::Unknown;
     };
     let mut begins = Vec::new();
     let mut wins = None;
-    for (k, name) in names.enumerate() {
-        for spelling in name.as_bytes().split(|&b| b == b'|') {
+    for (k, name) in names {
+        let mut rest = Some(name.as_bytes());
+        while let Some(here) = rest {
+            let end = here.iter().position(|&b| b == b'|');
+            rest = end.map(|end| &here[end + 1..]);
             // nearly all names begin otherwise
-            if !spelling
-                .first()
-                .is_some_and(|b| b.eq_ignore_ascii_case(first))
-            {
+            if !here.first().is_some_and(|b| b.eq_ignore_ascii_case(first)) {
                 continue;
             }
+            let spelling = &here[..end.unwrap_or(here.len())];
             if spelling.eq_ignore_ascii_case(word) {
                 return Meaning::One(k);
             }

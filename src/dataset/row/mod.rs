@@ -15,6 +15,7 @@ mod keyword;
 mod plain;
 
 pub use families::{Element, Numbered, Opaque, Single, filled};
+pub(super) use keyword::meaning_among;
 pub use keyword::{Meaning, canonical, meaning, near_ids};
 pub use plain::{Angle, Lens, Plain, Routine};
 

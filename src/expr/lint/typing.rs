@@ -9,6 +9,9 @@ use crate::expr::token::{Kind, Lexer, Token};
 
 /// Returns the doubts about the tokens of a text.
 pub(super) fn doubts(dialect: Dialect, text: &str) -> Vec<Doubt> {
+    if !may_doubt(text) {
+        return Vec::new();
+    }
     let mut lexer = Lexer::new(text, dialect == Dialect::Function);
     let mut last: Option<Token> = None;
     let mut before: Option<Token> = None;
@@ -26,6 +29,18 @@ pub(super) fn doubts(dialect: Dialect, text: &str) -> Vec<Doubt> {
         (before, last) = (last, Some(token));
     }
     found
+}
+
+/// Returns whether a text has a mark that may be doubted: an exclamation mark, a D behind a digit.
+fn may_doubt(text: &str) -> bool {
+    let mut last = b' ';
+    text.bytes().any(|byte| {
+        let is_suffix = matches!(byte, b'd' | b'D') && matches!(last, b'0'..=b'9' | b'.');
+        if !byte.is_ascii_whitespace() {
+            last = byte;
+        }
+        is_suffix || byte == b'!'
+    })
 }
 
 /// Returns whether an operand may end with this token.

@@ -16,8 +16,10 @@
 //! however narrow the peak is in time or on the way.
 
 use super::builder::Builder;
+use super::code::Code;
 use super::node::{Node, Value};
 use super::operation::{BinaryOp, UnaryOp};
+use super::run::Program;
 use crate::expr::spline::Piecewise;
 use crate::scalar::Table;
 use std::collections::BTreeSet;
@@ -41,6 +43,29 @@ pub(crate) struct Peaks {
     pub logarithms: Vec<Value>,
     /// angles whose sines and cosines these are made of
     pub angles: Vec<Value>,
+}
+
+impl Program {
+    /// Returns whether it has operations that may be narrow; most expressions have none.
+    pub(crate) fn may_peak(&self) -> bool {
+        self.core()
+            .code
+            .iter()
+            .any(|instruction| match instruction.code {
+                Code::Unary(op) => matches!(
+                    op,
+                    UnaryOp::Exp | UnaryOp::Cosh | UnaryOp::Tanh | UnaryOp::Atan | UnaryOp::Tan
+                ),
+                Code::Binary(op) => matches!(op, BinaryOp::Pow | BinaryOp::Div),
+                Code::Whole(_) | Code::HalfPower(_) | Code::Lookup { .. } => true,
+                Code::Compare(_)
+                | Code::Select
+                | Code::CompareSelect(_)
+                | Code::If
+                | Code::Call(..)
+                | Code::Partial(..) => false,
+            })
+    }
 }
 
 impl Builder {
@@ -223,6 +248,38 @@ mod tests {
         assert!(of(&fine, &waves).is_empty());
         let straight: Vec<f64> = fine.iter().map(|x| 3.0 * x).collect();
         assert!(of(&fine, &straight).is_empty());
+    }
+
+    #[test]
+    fn what_may_not_peak_has_no_peaks() {
+        use crate::expr::{Expr, functions::Function, interpolation::Bindings};
+        let examples = Function::ALL.iter().flat_map(|f| f.row().examples);
+        let mut texts: Vec<String> = examples.map(|e| e.source.to_string()).collect();
+        // every number of an example in turn is something that varies
+        for k in 0..texts.len() {
+            for digit in "0123456789".chars() {
+                texts.push(texts[k].replacen(digit, "DX(1,2)", 1));
+            }
+        }
+        for text in ["SIN(TIME)*DX(1,2)", "IF(TIME-1: TIME, 0, 2*TIME)"] {
+            texts.push(text.into());
+        }
+        let mut calm = 0;
+        for text in &texts {
+            let Ok(expr) = Expr::parse(text) else {
+                continue;
+            };
+            let Ok(program) = expr.compile(&Bindings::default()) else {
+                continue;
+            };
+            if !program.may_peak() {
+                calm += 1;
+                let mut builder = Builder::new(Folding::Strict);
+                let outputs = program.record(&mut builder);
+                assert!(builder.peaks(&outputs).logarithms.is_empty(), "{text}");
+            }
+        }
+        assert!(calm > 20, "{calm}");
     }
 
     /// The logarithms of what `f` records over one input, as a program.

@@ -70,6 +70,15 @@ impl Program {
         Self::of(Arc::clone(&self.inputs), self.machine.with_core(core))
     }
 
+    /// Returns the same program for other inputs, as many as before.
+    pub(super) fn with_inputs(self, inputs: Vec<Input>) -> Self {
+        debug_assert_eq!(inputs.len(), self.inputs.len(), "an input for each");
+        Self {
+            inputs: inputs.into(),
+            ..self
+        }
+    }
+
     pub(super) fn core(&self) -> &Core {
         self.machine.core()
     }

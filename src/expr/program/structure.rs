@@ -20,6 +20,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Slots of a builder that records equations, at the beginning.
 const SLOTS_OF_EQUATIONS: usize = 2048;
+/// Structures whose operands are numbered alike, at most: what differs more is made anew.
+const MOST_ALIKE: usize = 64;
 /// Generations that a structure is kept without being asked for.
 const KEPT: u32 = 2;
 
@@ -72,6 +74,13 @@ impl Structures {
     #[must_use]
     pub(crate) fn look(&self) -> Looking {
         Looking(PRESENT.with(|present| present.replace(Some(self.clone()))))
+    }
+
+    /// Lets this thread do so unless it looks somewhere else already.
+    #[must_use]
+    pub(crate) fn look_too(&self) -> Looking {
+        let present = PRESENT.with(|present| present.borrow().clone());
+        present.unwrap_or_else(|| self.clone()).look()
     }
 
     /// Begins another generation: what none of the last ones has asked for is forgotten.
@@ -157,12 +166,19 @@ fn program(
     if let Some(found) = alike.iter_mut().find(|s| s.is_of(builder, outputs, layout)) {
         found.generation = now;
         let constants = schedule::numbers(builder, &found.constants);
-        let program = found.program.with_constants(constants, &builder.tables);
+        let mut program = found.program.with_constants(constants, &builder.tables);
+        if found.inputs != builder.inputs {
+            program = program.with_inputs(found.inputs_of(builder));
+            found.inputs.clone_from(&builder.inputs);
+        }
         // what the next one may share is likelier that of the last one than of the first
         found.program = program.clone();
         return (program, found.constants.clone());
     }
     let (program, constants) = compose::program(builder, outputs, layout);
+    if alike.len() == MOST_ALIKE {
+        return (program, constants);
+    }
     alike.push(Structure {
         nodes: builder.nodes.clone(),
         arguments: builder.arguments.clone(),
@@ -177,14 +193,25 @@ fn program(
 }
 
 impl Structure {
-    /// Returns whether it was made of nodes that differ in their constants alone.
+    /// Returns whether it was made of nodes that differ in their constants alone; without a layout,
+    /// in what their inputs are as well.
     fn is_of(&self, builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> bool {
         self.outputs == outputs
             && self.layout.as_deref() == layout
-            && self.inputs == builder.inputs
+            && (self.inputs == builder.inputs
+                || layout.is_none() && self.inputs.len() == builder.inputs.len())
             && self.arguments == builder.arguments
             && self.nodes.len() == builder.nodes.len()
             && self.nodes.iter().zip(&builder.nodes).all(node::is_alike)
+    }
+
+    /// Returns the inputs of its program when its nodes read those of `builder`: without a layout
+    /// they are the needed ones, in the order in which they were asked for.
+    fn inputs_of(&self, builder: &Builder) -> Vec<Input> {
+        let mut needed = self.program.inputs().iter().peekable();
+        let pairs = self.inputs.iter().zip(&builder.inputs);
+        let is_needed = |(of, now): (&Input, &Input)| needed.next_if_eq(&of).map(|_| *now);
+        pairs.filter_map(is_needed).collect()
     }
 }
 
@@ -280,6 +307,27 @@ mod tests {
             shared += 6 - met.by_hash.values().map(Vec::len).sum::<usize>();
         }
         assert!(shared > 50, "{shared} of 900");
+    }
+
+    #[test]
+    fn a_program_with_other_inputs_is_the_one_made_anew_to_the_bit() {
+        for seed in 0..100 {
+            let structures = Structures::default();
+            for first in [0, 7, 2, 7] {
+                let (mut builder, outputs) = recorded(seed, &[2.0, 3.0, 0.3, 0.7]);
+                builder.inputs = vec![Input::Slot(first), Input::Slot(first + 1)];
+                // some programs read one of the two
+                for outputs in [&outputs[..], &outputs[..1]] {
+                    let looking = structures.look_too();
+                    let program = builder.finish(outputs);
+                    drop(looking);
+                    let (alone, _) = schedule::program(&builder, outputs, None);
+                    assert_eq!(program.inputs(), builder.finish(outputs).inputs(), "{seed}");
+                    assert_eq!(program.inputs(), alone.inputs(), "{seed}");
+                    assert_eq!(bits(&program, None), bits(&alone, None), "{seed}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -68,10 +68,10 @@ fn markers_in(formula: &Formula) -> Vec<u32> {
     let Formula::Expression { text, .. } = formula else {
         return Vec::new();
     };
-    let Ok(expr) = text.expression() else {
+    let Ok(ast) = text.sound_ast() else {
         return Vec::new();
     };
-    let named = super::references::named(&expr).into_iter();
+    let named = super::references::named(ast).into_iter();
     let markers = named.filter(|(_, id)| id.kind == ElementKind::Marker);
     markers.map(|(_, id)| id.number).collect()
 }

@@ -3,7 +3,8 @@
 use super::{Out, about, advise, at_argument, error, near};
 use crate::diagnostic::{Cause, Diagnostic, Span};
 use crate::expr::Expr;
-use crate::expr::ast::Node;
+use crate::expr::ast::{Ast, Node};
+use crate::expr::lint::lint;
 use crate::expr::signature;
 use crate::model::{ElementId, ElementKind, Formula, Model};
 use std::collections::BTreeMap;
@@ -51,7 +52,7 @@ pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
             )));
             continue;
         }
-        match text.expression() {
+        match text.sound_ast() {
             Err(d) => {
                 let at = d.span.map_or(0, |s| s.start);
                 out.push(placed(
@@ -61,12 +62,12 @@ pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
                 ));
                 continued_by_comma(owned.formula, at, out);
             }
-            Ok(expr) => {
-                for d in expr.warnings() {
+            Ok(ast) => {
+                for d in lint(ast, text) {
                     let at = d.span.map_or(0, |s| s.start);
                     out.push(placed(who(strip(d)), owned.formula, at));
                 }
-                for (at, target) in named(&expr) {
+                for (at, target) in named(ast) {
                     if known.has(model, target) {
                         continue;
                     }
@@ -92,7 +93,7 @@ impl Model {
         };
         let mut known = Known::default();
         let mut out = Vec::new();
-        for (at, target) in named(&expr) {
+        for (at, target) in named(expr.ast()) {
             if known.has(self, target) {
                 continue;
             }
@@ -166,8 +167,7 @@ impl Known {
 }
 
 /// The elements an expression names: byte and element. Zeros that stand for ground are left out.
-pub(crate) fn named(expr: &Expr) -> Vec<(usize, ElementId)> {
-    let ast = expr.ast();
+pub(crate) fn named(ast: &Ast) -> Vec<(usize, ElementId)> {
     let mut all = Vec::new();
     for node in &ast.nodes {
         let Node::Call { callee, args } = node else {

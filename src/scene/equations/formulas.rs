@@ -193,9 +193,8 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// Returns what is added to a formula from outside, where it is a plant input.
     fn added(&self, f: usize) -> S {
-        let mut inputs = self.scene.external_inputs.iter();
-        match inputs.position(|s| *s == ExternalInput::Input(f)) {
-            Some(place) => self.now.external[place],
+        match self.scene.plant_inputs.get(&f) {
+            Some(&place) => self.now.external[place],
             None => S::zero(),
         }
     }
