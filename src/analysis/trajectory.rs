@@ -149,6 +149,8 @@ pub struct Trajectory {
     pub beyond: Vec<(f64, usize, f64)>,
     /// end and length of the last step that was kept
     pub last_step: Option<(f64, f64)>,
+    /// the step that would have followed at the end, in s, and the method that proposes it
+    pub next_step: Option<(String, f64)>,
     /// where energy came from and where it went
     pub energy: EnergyFlow,
     /// how it grows

@@ -407,6 +407,11 @@ pub trait Method<P: ?Sized> {
     ) -> Result<(), Failure> {
         over_interpolant(self, problem, ends, &GAUSS_3, work, visit)
     }
+    /// Returns the length of the step that would follow the last one, in s, where the same method
+    /// may begin with it though it knows nothing of the past: one of several steps may not.
+    fn proposal(&self) -> Option<f64> {
+        None
+    }
     /// Proposes the length of the next step, in s.
     fn propose(&mut self, h: f64);
     /// Returns the end of the last accepted step, in s.

@@ -688,6 +688,10 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
         Ok(())
     }
 
+    fn proposal(&self) -> Option<f64> {
+        self.advanced.then_some(self.h_next)
+    }
+
     fn propose(&mut self, h: f64) {
         self.h_next = h;
     }

@@ -22,6 +22,8 @@ pub(super) struct Kept {
     mode: u32,
     system: System,
     assembly: Assembly,
+    /// the step with which the simulation would have gone on, in s, and its method
+    next_step: Option<(String, f64)>,
     /// the program of the columns at the start, and the numbers that it lacks
     columns: Option<(Program, Vec<Unsupported>)>,
 }
@@ -34,8 +36,14 @@ impl Kept {
             mode,
             system,
             assembly,
+            next_step: None,
             columns: None,
         }
+    }
+
+    /// Keeps the step with which the simulation would have gone on.
+    pub(super) fn keep_step(&mut self, next_step: Option<(String, f64)>) {
+        self.next_step = next_step;
     }
 
     /// Keeps the program of the columns, which belongs to the configuration at the start.
@@ -152,6 +160,7 @@ impl Session {
         system.resolve().ok()?;
         system.begin_sensing();
         self.kept_model = Some(kept.model);
+        self.carried_step = kept.next_step;
         Some((system, kept.assembly))
     }
 
@@ -184,6 +193,7 @@ impl Session {
     /// Returns the system of the simulation before, or of the start, where it can be gone on with.
     pub(super) fn before(&mut self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
         (self.kept_model, self.columns_at_start) = (None, None);
+        self.carried_step = None;
         if let Some(again) = self.again(mode, inputs) {
             return Some(again);
         }

@@ -138,6 +138,9 @@ pub struct Session {
     kept: Option<Box<Kept>>,
     /// the model of the system that the present simulation began with, as that keeps it
     kept_model: Option<Arc<Model>>,
+    /// the step, in s, with which the simulation before would have gone on, and its method, where
+    /// the present one goes on with its system
+    carried_step: Option<(String, f64)>,
     /// program of the columns of the present scene
     columns_program: Option<Program>,
     /// the program of the columns that was recorded with the system of the present start, or that
@@ -223,6 +226,7 @@ impl Session {
             changing: BTreeSet::new(),
             kept: None,
             kept_model: None,
+            carried_step: None,
             columns_program: None,
             columns_at_start: None,
             hooks: Vec::new(),

@@ -125,7 +125,9 @@ impl Session {
         }
         if self.hooks.is_empty() && analysis == Analysis::Dynamic && status == Status::Completed {
             let model = self.made_of(&system.scene);
-            self.kept = Some(Box::new(Kept::new(model, DYNAMIC, system, assembly)));
+            let mut kept = Kept::new(model, DYNAMIC, system, assembly);
+            kept.keep_step(self.carried_step.take());
+            self.kept = Some(Box::new(kept));
         }
         Ok(status)
     }

@@ -52,6 +52,13 @@ impl<'a> Course<'a> {
         }
     }
 
+    /// Returns the step that the simulation before leaves to the method that begins, in s.
+    fn first_step(&self) -> Option<f64> {
+        let begins = self.why == Takeover::Begins && self.restarts == 0;
+        let carried = self.options.h_carried.as_ref().filter(|_| begins)?;
+        (carried.0 == self.name).then_some(carried.1)
+    }
+
     /// Returns whether stiffness may change the method.
     fn may_change(&self) -> bool {
         self.options.is_auto() && self.name == "DOP853"
@@ -170,6 +177,7 @@ fn go(
             end,
             landings: &landings,
             max_steps,
+            first_step: course.first_step(),
             may_change: course.may_change(),
             returns_after: course.returns_after(),
             may_slide: !implicit,
@@ -181,6 +189,8 @@ fn go(
         system.branches_mut().release();
         // another method, or other rows
         let Err(finished) = finished else {
+            let proposal = method.proposal().map(|h| (course.name.clone(), h));
+            out.next_step = proposal;
             return;
         };
         y.truncate(n);

@@ -69,6 +69,8 @@ pub(super) struct Limits<'a> {
     pub landings: &'a [f64],
     /// attempted steps permitted
     pub max_steps: usize,
+    /// length of the first step, in s; `None`: the method chooses it
+    pub first_step: Option<f64>,
     /// whether another method may take over where stability limits the steps
     pub may_change: bool,
     /// changes of branches after which the method before may try again; zero: never
@@ -220,7 +222,8 @@ impl<'a> Leg<'a> {
         self.switches.start(self.system, t, y);
         method.start(self.system, t, y)?;
         self.look_ahead(method)?;
-        if let Some(h) = self.sense_beginning(method)? {
+        let stepsize = self.sense_beginning(method)?;
+        if let Some(h) = stepsize.or(self.limits.first_step) {
             method.propose(h);
         }
         self.begin_peaks(method);

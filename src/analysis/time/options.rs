@@ -24,6 +24,9 @@ pub struct Options {
     pub goes_on_stiff: bool,
     /// first step
     pub h_initial: Option<f64>,
+    /// the step, in s, with which the simulation before would have gone on, and its method; it
+    /// counts before `h_initial` where this one begins with the same method
+    pub h_carried: Option<(String, f64)>,
     /// longest step
     pub h_max: f64,
     /// shortest step
@@ -44,6 +47,7 @@ impl Default for Options {
             first: "DOP853".into(),
             goes_on_stiff: false,
             h_initial: None,
+            h_carried: None,
             h_max: f64::INFINITY,
             h_min: 0.0,
             max_order: None,

@@ -648,6 +648,10 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
         over_interpolant(self, problem, ends, &RADAU_3, work, visit)
     }
 
+    fn proposal(&self) -> Option<f64> {
+        self.advanced.then_some(self.control.h_next)
+    }
+
     fn propose(&mut self, h: f64) {
         self.control.h_next = h;
     }
