@@ -6,6 +6,7 @@ use super::Session;
 use super::placed::Placed;
 use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
+use crate::analysis::trajectory::Left;
 use crate::expr::program::Program;
 use crate::model::Model;
 use crate::scene::Scene;
@@ -22,8 +23,8 @@ pub(super) struct Kept {
     mode: u32,
     system: System,
     assembly: Assembly,
-    /// the step with which the simulation would have gone on, in s, and its method
-    next_step: Option<(String, f64)>,
+    /// the method of the simulation, and what it leaves
+    left: Option<Left>,
     /// the program of the columns at the start, and the numbers that it lacks
     columns: Option<(Program, Vec<Unsupported>)>,
 }
@@ -36,14 +37,14 @@ impl Kept {
             mode,
             system,
             assembly,
-            next_step: None,
+            left: None,
             columns: None,
         }
     }
 
-    /// Keeps the step with which the simulation would have gone on.
-    pub(super) fn keep_step(&mut self, next_step: Option<(String, f64)>) {
-        self.next_step = next_step;
+    /// Keeps what the method of the simulation leaves.
+    pub(super) fn keep_left(&mut self, left: Option<Left>) {
+        self.left = left;
     }
 
     /// Keeps the program of the columns, which belongs to the configuration at the start.
@@ -160,7 +161,7 @@ impl Session {
         system.resolve().ok()?;
         system.begin_sensing();
         self.kept_model = Some(kept.model);
-        self.carried_step = kept.next_step;
+        (self.left, self.goes_on) = (kept.left, true);
         Some((system, kept.assembly))
     }
 
@@ -193,7 +194,7 @@ impl Session {
     /// Returns the system of the simulation before, or of the start, where it can be gone on with.
     pub(super) fn before(&mut self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
         (self.kept_model, self.columns_at_start) = (None, None);
-        self.carried_step = None;
+        (self.left, self.goes_on) = (None, false);
         if let Some(again) = self.again(mode, inputs) {
             return Some(again);
         }

@@ -43,6 +43,7 @@ use crate::analysis::linear::{self, Linearization};
 use crate::analysis::session::columns::Columns;
 use crate::analysis::system::{System, closures};
 use crate::analysis::time::output::Output;
+use crate::analysis::trajectory::Left;
 use crate::analysis::warning::AssemblyWarning;
 use crate::analysis::watch::{Unwatched, Watch};
 use crate::analysis::work_limit::WorkLimit;
@@ -138,9 +139,11 @@ pub struct Session {
     kept: Option<Box<Kept>>,
     /// the model of the system that the present simulation began with, as that keeps it
     kept_model: Option<Arc<Model>>,
-    /// the step, in s, with which the simulation before would have gone on, and its method, where
-    /// the present one goes on with its system
-    carried_step: Option<(String, f64)>,
+    /// the present simulation goes on with the system of the one before, of which all was told
+    goes_on: bool,
+    /// the method of the simulation before, and what it leaves, where the present one goes on with
+    /// its system
+    left: Option<Left>,
     /// program of the columns of the present scene
     columns_program: Option<Program>,
     /// the program of the columns that was recorded with the system of the present start, or that
@@ -226,7 +229,8 @@ impl Session {
             changing: BTreeSet::new(),
             kept: None,
             kept_model: None,
-            carried_step: None,
+            goes_on: false,
+            left: None,
             columns_program: None,
             columns_at_start: None,
             hooks: Vec::new(),

@@ -72,7 +72,7 @@ impl Session {
             self.stiffness.see(&trajectory, span.end - span.start);
         }
         self.last = Integrated::of(kind, &trajectory, settings.error, span);
-        self.carried_step = trajectory.next_step.take();
+        self.left = trajectory.left.take();
         let last = trajectory.rows.last().cloned();
         if !matches!(stopped, Some(StopReason::RunsAway { .. })) {
             let stops = matches!(stopped, Some(StopReason::Method { .. }));
