@@ -347,8 +347,8 @@ pub struct Stats {
     pub at_edge: usize,
 }
 
-/// What a method leaves to one of its kind that goes on where it has ended: with the same problem,
-/// constants of which may have changed.
+/// The memory of a method that has ended, for one of its kind that goes on from there with the same
+/// problem, constants of which may have changed.
 #[derive(Clone, Debug)]
 pub struct Memory {
     /// length of the step that would have followed, in s

@@ -23,8 +23,6 @@ pub(super) struct Kept {
     mode: u32,
     system: System,
     assembly: Assembly,
-    /// the method of the simulation, and what it leaves
-    left: Option<Left>,
     /// the program of the columns at the start, and the numbers that it lacks
     columns: Option<(Program, Vec<Unsupported>)>,
 }
@@ -37,14 +35,8 @@ impl Kept {
             mode,
             system,
             assembly,
-            left: None,
             columns: None,
         }
-    }
-
-    /// Keeps what the method of the simulation leaves.
-    pub(super) fn keep_left(&mut self, left: Option<Left>) {
-        self.left = left;
     }
 
     /// Keeps the program of the columns, which belongs to the configuration at the start.
@@ -135,6 +127,27 @@ impl Session {
         self.kept_model.take().unwrap_or_else(copied)
     }
 
+    /// Returns what the method has left that led to the present state, where the model differs from
+    /// that of its system by nothing but constants that are external inputs.
+    pub(super) fn left_before(&mut self, scene: &Scene) -> Option<Left> {
+        let (model, left) = self.carried.as_ref()?.left.as_ref()?;
+        let is_same = self.goes_on || without_constants(&mut self.model, scene, |m| *m == **model);
+        is_same.then(|| left.clone())
+    }
+
+    /// Keeps what a method leaves with the state to which it has led.
+    pub(super) fn keep_left(&mut self, left: Option<Left>, scene: &Scene) {
+        // closures may answer otherwise
+        let Some(left) = left.filter(|_| self.hooks.is_empty()) else {
+            return;
+        };
+        let model = self.made_of(scene);
+        self.kept_model = Some(Arc::clone(&model));
+        if let Some(carried) = &mut self.carried {
+            carried.left = Some((model, left));
+        }
+    }
+
     /// Returns the system of the simulation before, at the state that it left, where nothing is
     /// different but constants that commands change. No constraint reads these: it still holds.
     fn again(&mut self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
@@ -161,7 +174,7 @@ impl Session {
         system.resolve().ok()?;
         system.begin_sensing();
         self.kept_model = Some(kept.model);
-        (self.left, self.goes_on) = (kept.left, true);
+        self.goes_on = true;
         Some((system, kept.assembly))
     }
 
@@ -194,7 +207,7 @@ impl Session {
     /// Returns the system of the simulation before, or of the start, where it can be gone on with.
     pub(super) fn before(&mut self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
         (self.kept_model, self.columns_at_start) = (None, None);
-        (self.left, self.goes_on) = (None, false);
+        self.goes_on = false;
         if let Some(again) = self.again(mode, inputs) {
             return Some(again);
         }

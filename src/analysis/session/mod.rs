@@ -43,7 +43,6 @@ use crate::analysis::linear::{self, Linearization};
 use crate::analysis::session::columns::Columns;
 use crate::analysis::system::{System, closures};
 use crate::analysis::time::output::Output;
-use crate::analysis::trajectory::Left;
 use crate::analysis::warning::AssemblyWarning;
 use crate::analysis::watch::{Unwatched, Watch};
 use crate::analysis::work_limit::WorkLimit;
@@ -141,9 +140,6 @@ pub struct Session {
     kept_model: Option<Arc<Model>>,
     /// the present simulation goes on with the system of the one before, of which all was told
     goes_on: bool,
-    /// the method of the simulation before, and what it leaves, where the present one goes on with
-    /// its system
-    left: Option<Left>,
     /// program of the columns of the present scene
     columns_program: Option<Program>,
     /// the program of the columns that was recorded with the system of the present start, or that
@@ -230,7 +226,6 @@ impl Session {
             kept: None,
             kept_model: None,
             goes_on: false,
-            left: None,
             columns_program: None,
             columns_at_start: None,
             hooks: Vec::new(),

@@ -137,7 +137,6 @@ impl Session {
             error: self.options.error.or(i.error).unwrap_or(DEFAULT_ERROR),
             method: options::method_named(asked),
             h_initial: i.hinit.map(|h| h * self.pace.steps),
-            left: self.left.clone(),
             h_max: self.pace.longest_step(i.hmax.unwrap_or(f64::INFINITY)),
             h_min: i.hmin.unwrap_or(0.0),
             max_order: i.kmax.map(|k| k as usize),

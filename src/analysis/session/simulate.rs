@@ -127,9 +127,7 @@ impl Session {
         }
         if self.hooks.is_empty() && analysis == Analysis::Dynamic && status == Status::Completed {
             let model = self.made_of(&system.scene);
-            let mut kept = Kept::new(model, DYNAMIC, system, assembly);
-            kept.keep_left(self.left.take());
-            self.kept = Some(Box::new(kept));
+            self.kept = Some(Box::new(Kept::new(model, DYNAMIC, system, assembly)));
         }
         Ok(status)
     }

@@ -1,8 +1,8 @@
 //! The state at which rows were last found to be the right ones: near it they need not be judged
 //! again.
 //!
-//! What a row determines beyond others changes by about as much as its gradient, whose derivatives
-//! are about one where coordinates and rows count as in projections:
+//! The part of a row beyond others changes by about as much as its gradient, whose derivatives are
+//! about one where coordinates and rows count as in projections:
 //!
 //! ```text
 //! Σᵢ |Δqᵢ|/√wᵢ ≤ κ σ        σ: the least that any row determined beyond the others

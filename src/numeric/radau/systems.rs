@@ -135,7 +135,7 @@ impl Systems {
             && match (&self.kind, &other.kind) {
                 (Kind::Full(_), Kind::Full(_)) => true,
                 (Kind::Sparse(own), Kind::Sparse(other)) => {
-                    Arc::ptr_eq(&own.pattern, &other.pattern)
+                    Arc::ptr_eq(&own.pattern, &other.pattern) || own.pattern == other.pattern
                 }
                 _ => false,
             }
