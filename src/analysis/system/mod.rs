@@ -212,7 +212,7 @@ impl System {
             let motions = 0..self.scene.motions.len();
             motions.map(|m| at.motion_function(m)).collect()
         });
-        let program = program.map_err(|what| complaints(what))?;
+        let program = program.map_err(complaints)?;
         Ok(self.drives.get_or_init(|| program))
     }
 
