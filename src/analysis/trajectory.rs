@@ -1,9 +1,10 @@
 //! The result of an analysis over time: states at output times, events, and why it ended.
 
 use super::runaway::{Runaway, RunsAway};
-use crate::numeric::{Stats, Stop};
+use crate::numeric::{Memory, Stats, Stop};
 use crate::scene::broken::Broken;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// The reason why an analysis ended before the last output time.
@@ -48,6 +49,8 @@ pub enum Takeover {
     Slides,
 }
 
+/// The name of a method, and what it leaves to one of its kind that goes on.
+pub type Left = (String, Arc<Memory>);
 /// Kinetic energy, and potential energy in gravity.
 pub type Energy = [f64; 2];
 /// Powers or works: given back by what stores energy, of damping and friction, of functions, of
@@ -149,6 +152,8 @@ pub struct Trajectory {
     pub beyond: Vec<(f64, usize, f64)>,
     /// end and length of the last step that was kept
     pub last_step: Option<(f64, f64)>,
+    /// the method that worked at the end, and what it leaves to one of its kind
+    pub left: Option<Left>,
     /// where energy came from and where it went
     pub energy: EnergyFlow,
     /// how it grows

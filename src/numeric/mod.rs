@@ -347,6 +347,16 @@ pub struct Stats {
     pub at_edge: usize,
 }
 
+/// The memory of a method that has ended, for one of its kind that goes on from there with the same
+/// problem, constants of which may have changed.
+#[derive(Clone, Debug)]
+pub struct Memory {
+    /// length of the step that would have followed, in s
+    step: f64,
+    /// derivatives of RADAU5
+    radau: Option<radau::Derivatives>,
+}
+
 /// The contract of a method for problems of type `P`.
 ///
 /// A new method provides: its state at the end of the last accepted step (`t`, `y`, `ydot`); a step
@@ -407,6 +417,13 @@ pub trait Method<P: ?Sized> {
     ) -> Result<(), Failure> {
         over_interpolant(self, problem, ends, &GAUSS_3, work, visit)
     }
+    /// Leaves, at the end of an integration, what a method of its kind may go on with; nothing is
+    /// left of it. `None`: one of several steps begins anew.
+    fn leave(&mut self) -> Option<Memory> {
+        None
+    }
+    /// Goes on, after its start, with what a method of its kind has left where it ended.
+    fn go_on(&mut self, _memory: &Memory) {}
     /// Proposes the length of the next step, in s.
     fn propose(&mut self, h: f64);
     /// Returns the end of the last accepted step, in s.

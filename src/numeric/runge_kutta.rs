@@ -37,7 +37,7 @@
 use super::control::{self, Attempts, Pi, Rejection, Weights, worst, worst_index};
 use super::noise::{Noise, Probed};
 use super::quadrature::Node;
-use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
+use super::{Failure, Memory, Method, Ode, Options, Reason, Stats, Step, Stop};
 use interpolant::Interpolant;
 
 /// Order of the method.
@@ -686,6 +686,15 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
             visit(problem, Node { weight, t, y, ydot });
         }
         Ok(())
+    }
+
+    fn leave(&mut self) -> Option<Memory> {
+        let (step, radau) = (self.h_next, None);
+        self.advanced.then_some(Memory { step, radau })
+    }
+
+    fn go_on(&mut self, memory: &Memory) {
+        self.h_next = memory.step;
     }
 
     fn propose(&mut self, h: f64) {

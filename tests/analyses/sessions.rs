@@ -224,6 +224,123 @@ fn a_state_is_taken_changed_and_gone_on_from() {
     assert!(there.part(3).is_none());
 }
 
+/// A mass on a guide; spring, damping and force are numbers that a program changes.
+const GUIDED: &str = "
+PART/1, GROUND
+MARKER/1, PART=1
+PART/2, MASS=1, CM=20, IP=1,1,1
+MARKER/20, PART=2
+JOINT/1, TRANSLATIONAL, I=20, J=1
+VARIABLE/1, FUNCTION=0
+VARIABLE/2, FUNCTION=0
+VARIABLE/3, FUNCTION=0
+SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=20, J=1
+, FUNCTION=VARVAL(3)-VARVAL(1)*DZ(20,1)-VARVAL(2)*VZ(20,1)
+INTEGRATOR/GSTIFF, HINIT=1E-6
+END
+";
+
+/// Duration of a piece of a simulation of [`GUIDED`].
+const PIECE: f64 = 0.05;
+
+/// Goes on by pieces with other numbers each; returns place and velocity behind each piece.
+fn in_pieces(method: &str, pieces: &[[f64; 3]]) -> (Session, Vec<[f64; 2]>) {
+    let options = Options {
+        method: Some(method.into()),
+        error: Some(1e-6),
+        columns: vec!["DZ(20,1)".into(), "VZ(20,1)".into()],
+        ..Options::default()
+    };
+    let mut s = begin(whole(&format!("\n{GUIDED}")), "guided", options);
+    s.will_change([1, 2, 3]);
+    let mut ends = Vec::new();
+    for (k, numbers) in (1..).zip(pieces) {
+        for (id, x) in (1..).zip(numbers) {
+            let variable = s.model.variables.get_mut(&id).expect("the variable");
+            variable.function = Formula::text(x.to_string());
+        }
+        let done = s.run_to(Analysis::Dynamic, PIECE * f64::from(k), 1);
+        assert_eq!(done, Ok(Status::Completed));
+        let last = |name: &str| *(s.run.column(name).expect("a column").last()).expect("a row");
+        ends.push([last("DZ(20,1)"), last("VZ(20,1)")]);
+    }
+    (s, ends)
+}
+
+/// Returns place and velocity of the mass a piece later: powers of the solution over a short time.
+fn exact([x, v]: [f64; 2], [spring, damping, force]: [f64; 3]) -> [f64; 2] {
+    let halvings = 40;
+    let h = PIECE / f64::powi(2.0, halvings);
+    let product = |a: [[f64; 3]; 3], b: [[f64; 3]; 3]| {
+        let entry = |i: usize, j: usize| (0..3).map(|k| a[i][k] * b[k][j]).sum::<f64>();
+        [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)))
+    };
+    // what is left when the identity is taken away, so that nothing is rounded off
+    let rate = [
+        [0.0, h, 0.0],
+        [-spring * h, -damping * h, force * h],
+        [0.0; 3],
+    ];
+    let square = product(rate, rate);
+    let mut change = [0, 1, 2].map(|i| [0, 1, 2].map(|j| rate[i][j] + 0.5 * square[i][j]));
+    for _ in 0..halvings {
+        let square = product(change, change);
+        change = [0, 1, 2].map(|i| [0, 1, 2].map(|j| 2.0 * change[i][j] + square[i][j]));
+    }
+    let moved = |i: usize| change[i][0] * x + change[i][1] * v + change[i][2];
+    [x + moved(0), v + moved(1)]
+}
+
+#[test]
+fn pieces_whose_stiffness_jumps_are_as_exact_as_asked_for() {
+    let kinds = [
+        [0.0, 0.0, 3.0],
+        [1e8, 1e5, 3.0],
+        [0.0, 0.0, -2.0],
+        [100.0, 0.5, 5.0],
+        [0.0, 1e5, 1.0],
+        [0.0, 0.0, 1.0],
+        [1e4, 300.0, 0.0],
+    ];
+    // each behind each other
+    let n = kinds.len();
+    let pieces: Vec<[f64; 3]> = (0..n * n)
+        .map(|k| kinds[(k % n) * (k / n + 1) % n])
+        .collect();
+    for method in ["RADAU5", "DOP853", "AUTO", "BDF"] {
+        let (_, ends) = in_pieces(method, &pieces);
+        let (mut state, mut largest) = ([0.0; 2], [1e-3_f64; 2]);
+        for (numbers, end) in pieces.iter().zip(&ends) {
+            let expected = exact(state, *numbers);
+            for k in 0..2 {
+                largest[k] = largest[k].max(expected[k].abs());
+                let off = (end[k] - expected[k]).abs();
+                assert!(
+                    off < 1e-4 * largest[k],
+                    "{method} {numbers:?}: {off} of {largest:?}"
+                );
+            }
+            // from where it is, so that errors do not add up
+            state = *end;
+        }
+    }
+}
+
+#[test]
+fn a_simulation_that_goes_on_does_so_with_the_step_of_the_one_before() {
+    let pieces: Vec<[f64; 3]> = (0..40)
+        .map(|k| [0.5, 0.1, 1.0 + 0.1 * f64::from(k % 5)])
+        .collect();
+    for method in ["RADAU5", "DOP853"] {
+        let (s, _) = in_pieces(method, &pieces);
+        let counts = s.run.record.counts;
+        assert!(counts.steps < 100, "{method}: {}", counts.steps);
+        if method == "RADAU5" {
+            assert!(counts.jacobians < 10, "{}", counts.jacobians);
+        }
+    }
+}
+
 /// The last value of each column.
 trait Last {
     fn map_last(self) -> Vec<u64>;

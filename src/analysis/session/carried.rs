@@ -2,6 +2,7 @@
 
 use super::Session;
 use crate::analysis::system::{System, past, samples};
+use crate::analysis::trajectory::Left;
 use crate::expr::measures::Measure;
 use crate::model::geometry::orientation;
 use crate::model::{ElementId, ElementKind, Model, Orientation, Part};
@@ -14,6 +15,7 @@ use crate::scene::loops::Key;
 use crate::scene::unknown::{CoordinateId, UnknownId};
 use crate::space::{MarkerState, Vec3};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// State carried from one simulation to the next, by the identities of the unknowns.
 #[derive(Clone, Debug)]
@@ -40,6 +42,9 @@ pub(super) struct Carried {
     pub(super) past: BTreeMap<DelayId, past::Past>,
     /// values of VARIABLEs that read themselves, by their numbers: where Newton's iteration begins
     pub(super) guesses: BTreeMap<u32, f64>,
+    /// what the method leaves that led here, and the model of its system without the constants that
+    /// are external inputs
+    pub(super) left: Option<(Arc<Model>, Left)>,
 }
 
 impl Carried {
@@ -77,6 +82,7 @@ impl Session {
             guesses: guesses(&system.scene, &numbers),
             unknowns: [&unknowns.q[..], &unknowns.v, &unknowns.x].concat(),
             at_rest: false,
+            left: None,
             parts,
             numbers,
         });

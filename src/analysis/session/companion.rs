@@ -101,6 +101,10 @@ impl Session {
         let mut companion = Session::new(self.model.clone(), &self.run.name, options);
         companion.hooks.clone_from(&self.hooks);
         companion.carried.clone_from(&self.carried);
+        if let Some(carried) = &mut companion.carried {
+            // at another request
+            carried.left = None;
+        }
         companion.folders.clone_from(&self.folders);
         companion.limit = self.limit;
         if !companion.hooks.is_empty() && companion.carried.is_none() {

@@ -6,6 +6,7 @@ use super::Session;
 use super::placed::Placed;
 use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
+use crate::analysis::trajectory::Left;
 use crate::expr::program::Program;
 use crate::model::Model;
 use crate::scene::Scene;
@@ -126,6 +127,27 @@ impl Session {
         self.kept_model.take().unwrap_or_else(copied)
     }
 
+    /// Returns what the method has left that led to the present state, where the model differs from
+    /// that of its system by nothing but constants that are external inputs.
+    pub(super) fn left_before(&mut self, scene: &Scene) -> Option<Left> {
+        let (model, left) = self.carried.as_ref()?.left.as_ref()?;
+        let is_same = self.goes_on || without_constants(&mut self.model, scene, |m| *m == **model);
+        is_same.then(|| left.clone())
+    }
+
+    /// Keeps what a method leaves with the state to which it has led.
+    pub(super) fn keep_left(&mut self, left: Option<Left>, scene: &Scene) {
+        // closures may answer otherwise
+        let Some(left) = left.filter(|_| self.hooks.is_empty()) else {
+            return;
+        };
+        let model = self.made_of(scene);
+        self.kept_model = Some(Arc::clone(&model));
+        if let Some(carried) = &mut self.carried {
+            carried.left = Some((model, left));
+        }
+    }
+
     /// Returns the system of the simulation before, at the state that it left, where nothing is
     /// different but constants that commands change. No constraint reads these: it still holds.
     fn again(&mut self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
@@ -152,6 +174,7 @@ impl Session {
         system.resolve().ok()?;
         system.begin_sensing();
         self.kept_model = Some(kept.model);
+        self.goes_on = true;
         Some((system, kept.assembly))
     }
 
@@ -184,6 +207,7 @@ impl Session {
     /// Returns the system of the simulation before, or of the start, where it can be gone on with.
     pub(super) fn before(&mut self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
         (self.kept_model, self.columns_at_start) = (None, None);
+        self.goes_on = false;
         if let Some(again) = self.again(mode, inputs) {
             return Some(again);
         }

@@ -138,6 +138,8 @@ pub struct Session {
     kept: Option<Box<Kept>>,
     /// the model of the system that the present simulation began with, as that keeps it
     kept_model: Option<Arc<Model>>,
+    /// the present simulation goes on with the system of the one before, of which all was told
+    goes_on: bool,
     /// program of the columns of the present scene
     columns_program: Option<Program>,
     /// the program of the columns that was recorded with the system of the present start, or that
@@ -223,6 +225,7 @@ impl Session {
             changing: BTreeSet::new(),
             kept: None,
             kept_model: None,
+            goes_on: false,
             columns_program: None,
             columns_at_start: None,
             hooks: Vec::new(),

@@ -88,6 +88,7 @@ impl Session {
         // what the next simulation begins with
         let last = last.unwrap_or(first);
         self.keep(system, last);
+        self.keep_left(trajectory.left.take(), &system.scene);
         phase.end(&mut self.run.record.seconds, |s| &mut s.evaluate);
         // the record
         self.warn_of_stability(&trajectory);
@@ -106,6 +107,7 @@ impl Session {
     /// Chooses the method, and prepares the system for it.
     fn integration_of(&mut self, system: &mut System, kind: Kind, span: Span) -> Options {
         let mut settings = self.integration();
+        settings.left = self.left_before(&system.scene);
         if let (Kind::Kinematic, Some(longest)) = (kind, self.kinematic_hmax()) {
             settings.h_max = self.pace.longest_step(longest);
         }

@@ -93,8 +93,10 @@ impl Session {
         self.check_masses(&system, analysis)?;
         self.check_drives(&system, analysis, end)?;
         // what is told before it moves
-        self.first_facts(&system, &assembly);
-        self.warn_of_start(&system, &assembly);
+        if !self.goes_on {
+            self.first_facts(&system, &assembly);
+            self.warn_of_start(&system, &assembly);
+        }
         let phase = Phase::begin();
         let program = self.columns_program(&system)?;
         phase.end(&mut self.run.record.seconds, |s| &mut s.record);
@@ -222,7 +224,7 @@ impl Session {
         if !matches!(analysis, Analysis::Kinematic | Analysis::Dynamic) {
             return Ok(());
         }
-        let breaks = drives::breaks(system.configured(), self.time(), end)?;
+        let breaks = drives::breaks(system, self.time(), end)?;
         let refused = drives::refused(&breaks);
         if !refused.is_empty() && !self.options.piecewise {
             return Err(refused);

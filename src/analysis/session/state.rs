@@ -251,6 +251,7 @@ fn carried(v: &Value) -> Option<Carried> {
         samples: samples?,
         past: past.collect::<Option<_>>()?,
         guesses: BTreeMap::new(),
+        left: None,
     })
 }
 

@@ -79,6 +79,7 @@ impl Saved {
         match (place, &mut self.carried) {
             (Some(k), Some(carried)) => {
                 carried.numbers[Layout::STATE + k] = value;
+                carried.left = None;
                 Ok(())
             }
             _ => {

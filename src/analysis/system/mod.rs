@@ -23,6 +23,7 @@ pub(super) mod energy;
 pub mod external_inputs;
 pub mod implicit;
 mod jacobian;
+mod judged;
 mod loop_factors;
 mod numbers;
 mod ode;
@@ -52,12 +53,14 @@ use crate::scene::configuration::{Configuration, Configured, Elimination};
 use crate::scene::equations::Unsupported;
 use crate::scene::layout::Layout;
 use crate::scene::mover::Mover;
+use crate::scene::programs::record;
 use crate::scene::recorder::Recorder;
 use branches::Branches;
 use closures::Hook;
 use recorded::Recorded;
 pub(in crate::analysis) use rows::RowGradients;
 use singular_step::SingularSteps;
+use std::cell::OnceCell;
 use std::sync::Arc;
 use turns::Look;
 
@@ -78,6 +81,10 @@ pub struct System {
     energy: Option<Box<energy::EnergyProgram>>,
     /// instants near which rows were dependent in the present step
     singular_steps: SingularSteps,
+    /// where the rows that take part were last found to be the right ones
+    judged: Option<judged::Judged>,
+    /// the functions of the motions, once somebody has asked for them
+    drives: OnceCell<Program>,
     /// what steps leave behind, while evaluations are made aside
     traces: aside::Traces,
     /// the permitted local error: evaluations need not be much better
@@ -145,6 +152,8 @@ impl System {
                 hooks: hooks.to_vec(),
                 energy: None,
                 singular_steps: SingularSteps::default(),
+                judged: None,
+                drives: OnceCell::new(),
                 traces: aside::Traces::default(),
                 precision: 1e-6,
                 unsolved: None,
@@ -189,6 +198,22 @@ impl System {
             self.prepare_energy();
         }
         Ok(())
+    }
+
+    /// Returns the program of the functions of all motions   (n_motions)
+    ///
+    /// # Errors
+    /// Functions that the equations cannot supply.
+    pub(in crate::analysis) fn drives(&self) -> Result<&Program, Vec<Diagnostic>> {
+        if let Some(known) = self.drives.get() {
+            return Ok(known);
+        }
+        let program = record(self.configured(), |at| {
+            let motions = 0..self.scene.motions.len();
+            motions.map(|m| at.motion_function(m)).collect()
+        });
+        let program = program.map_err(complaints)?;
+        Ok(self.drives.get_or_init(|| program))
     }
 
     /// Returns the program of the values of all rows   (n_rows)

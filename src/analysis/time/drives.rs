@@ -5,16 +5,14 @@
 //! that jump. A function given as a velocity is one derivative smoother as a displacement, one
 //! given as an acceleration two.
 
-use crate::analysis::system::complaints;
+use crate::analysis::system::System;
 use crate::analysis::warning::{self, RunWarning};
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Input;
 use crate::expr::smoothness::{Breakpoint, smoothness};
 use crate::model::{ElementKind, Level};
 use crate::results::{Jump, Quantity};
-use crate::scene::configuration::Configured;
 use crate::scene::layout::Layout;
-use crate::scene::programs::record;
 
 /// A time at which a motion is not smooth.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,16 +53,12 @@ fn quantity(order: usize) -> Quantity {
 ///
 /// # Errors
 /// Functions that cannot be evaluated.
-pub fn breaks(scene: Configured<'_>, start: f64, end: f64) -> Result<Vec<Break>, Vec<Diagnostic>> {
-    let mut found = Vec::new();
+pub fn breaks(system: &System, start: f64, end: f64) -> Result<Vec<Break>, Vec<Diagnostic>> {
+    let (scene, mut found) = (&system.scene, Vec::new());
     if scene.motions.is_empty() || end.partial_cmp(&start) != Some(std::cmp::Ordering::Greater) {
         return Ok(found);
     }
-    let count = scene.motions.len();
-    let program = record(scene, |at| {
-        (0..count).map(|m| at.motion_function(m)).collect()
-    })
-    .map_err(complaints)?;
+    let program = system.drives()?;
     let time = Input::Slot(Layout::TIME as u32);
     for (m, motion) in scene.motions.iter().enumerate() {
         let higher = match motion.level {
@@ -72,7 +66,7 @@ pub fn breaks(scene: Configured<'_>, start: f64, end: f64) -> Result<Vec<Break>,
             Level::Velocity => 1,
             Level::Acceleration => 2,
         };
-        let all = smoothness(&program, m, time, start..=end).breakpoints;
+        let all = smoothness(program, m, time, start..=end).breakpoints;
         let shown = |b: Breakpoint| Break {
             motion: motion.id,
             at: b.at,

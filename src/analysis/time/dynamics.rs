@@ -10,9 +10,10 @@ use crate::analysis::time::leg::{Finished, Leg, Limits};
 use crate::analysis::time::options::Options;
 use crate::analysis::trajectory::{Ended, Takeover, Trajectory};
 use crate::analysis::watch::Watch;
-use crate::numeric::{self, Method, Ode, Reason, Stop};
+use crate::numeric::{self, Memory, Method, Ode, Reason, Stop};
 use crate::scene::layout::Layout;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Restarts with other rows before something is wrong.
 const MAX_ROW_RESTARTS: usize = 10_000;
@@ -50,6 +51,13 @@ impl<'a> Course<'a> {
             patience: usize::from(options.goes_on_stiff),
             returns: 0,
         }
+    }
+
+    /// Returns what the simulation before leaves to the method that begins.
+    fn memory(&self) -> Option<&'a Memory> {
+        let begins = self.why == Takeover::Begins && self.restarts == 0;
+        let (name, memory) = self.options.left.as_ref().filter(|_| begins)?;
+        (*name == self.name).then_some(memory)
     }
 
     /// Returns whether stiffness may change the method.
@@ -170,6 +178,7 @@ fn go(
             end,
             landings: &landings,
             max_steps,
+            memory: course.memory(),
             may_change: course.may_change(),
             returns_after: course.returns_after(),
             may_slide: !implicit,
@@ -181,6 +190,8 @@ fn go(
         system.branches_mut().release();
         // another method, or other rows
         let Err(finished) = finished else {
+            let memory = method.leave();
+            out.left = memory.map(|memory| (course.name, Arc::new(memory)));
             return;
         };
         y.truncate(n);

@@ -12,7 +12,7 @@ use crate::analysis::time::energy::DrivenAccount;
 use crate::analysis::time::kinematic_sensors::Followed;
 use crate::analysis::time::options::Options;
 use crate::analysis::time::output::Output;
-use crate::analysis::time::ranks;
+use crate::analysis::time::ranks::{self, Judgement};
 use crate::analysis::trajectory::{Ended, Takeover, Trajectory};
 use crate::analysis::watch::Watch;
 use crate::numeric::{Failure, Reason, Stop};
@@ -169,7 +169,7 @@ impl Tracer<'_> {
         }
         let now = self.path.now();
         let numbers = system.numbers_at(now.t, &now.y);
-        if let Some(active) = ranks::better_rows(system.configured(), &numbers) {
+        if let Judgement::Better(active) = ranks::better_rows(system.configured(), &numbers) {
             let chosen = (self.out.t.len(), now.t, active.clone());
             system.numbers.copy_from_slice(&numbers);
             if system.reselect(active).is_ok() {

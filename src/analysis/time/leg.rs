@@ -21,7 +21,7 @@ use crate::analysis::time::states::Node;
 use crate::analysis::time::switches::{self, Switches, Verdict};
 use crate::analysis::trajectory::{Ended, Trajectory};
 use crate::analysis::watch::Watch;
-use crate::numeric::{Method, Reason, Step, Stop};
+use crate::numeric::{Memory, Method, Reason, Step, Stop};
 use crate::scene::broken::Broken;
 
 /// Attempted steps after which a run must have come further by [`STALLED_PART`], at most and at
@@ -69,6 +69,8 @@ pub(super) struct Limits<'a> {
     pub landings: &'a [f64],
     /// attempted steps permitted
     pub max_steps: usize,
+    /// what a method of the same kind has left where this one begins; `None`: it begins anew
+    pub memory: Option<&'a Memory>,
     /// whether another method may take over where stability limits the steps
     pub may_change: bool,
     /// changes of branches after which the method before may try again; zero: never
@@ -219,6 +221,9 @@ impl<'a> Leg<'a> {
         let t = self.limits.start;
         self.switches.start(self.system, t, y);
         method.start(self.system, t, y)?;
+        if let Some(memory) = self.limits.memory {
+            method.go_on(memory);
+        }
         self.look_ahead(method)?;
         if let Some(h) = self.sense_beginning(method)? {
             method.propose(h);

@@ -3,7 +3,7 @@
 
 use crate::analysis::system::System;
 use crate::analysis::time::leg::{Finished, Leg};
-use crate::analysis::time::ranks::{self, Sides};
+use crate::analysis::time::ranks::{self, Judgement, Sides};
 use crate::analysis::time::states::Node;
 use crate::numeric::{Failure, Method, Reason, Step, Stop};
 use crate::scene::layout::Layout;
@@ -172,8 +172,10 @@ impl Leg<'_> {
         if let Some((row, _)) = violated {
             return Err(self.restore(row, method, step.t0));
         }
-        if weak && self.system.watches_rows() && self.choose(method.t(), method.y()) {
-            return Err(Finished::Rows(method.y().to_vec()));
+        let (t, y) = (method.t(), method.y());
+        let is_open = weak && self.system.watches_rows() && !self.system.has_right_rows(t, y);
+        if is_open && self.choose(t, y) {
+            return Err(Finished::Rows(y.to_vec()));
         }
         Ok(())
     }
@@ -217,9 +219,12 @@ impl Leg<'_> {
     fn choose(&mut self, t: f64, y: &[f64]) -> bool {
         let l = self.system.scene.layout;
         l.set_state(&mut self.system.numbers, t, y);
-        let Some(active) = ranks::better_rows(self.system.configured(), &self.system.numbers)
-        else {
-            return false;
+        let active = match ranks::better_rows(self.system.configured(), &self.system.numbers) {
+            Judgement::Better(active) => active,
+            Judgement::Right(least) => {
+                self.system.note_right_rows(least);
+                return false;
+            }
         };
         let chosen = (self.out.t.len(), t, active.clone());
         if self.system.reselect(active).is_err() {

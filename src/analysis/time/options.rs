@@ -1,6 +1,7 @@
 //! Options of an integration, and the choice of its method.
 
 use crate::analysis::system::System;
+use crate::analysis::trajectory::Left;
 use crate::numeric::connected::strong;
 use crate::numeric::pattern::Pattern;
 use crate::numeric::{self, Method, Ode};
@@ -24,6 +25,9 @@ pub struct Options {
     pub goes_on_stiff: bool,
     /// first step
     pub h_initial: Option<f64>,
+    /// what the method of the simulation before has left, if this one goes on with its system: its
+    /// step counts before `h_initial` where this one begins with the same method
+    pub left: Option<Left>,
     /// longest step
     pub h_max: f64,
     /// shortest step
@@ -44,6 +48,7 @@ impl Default for Options {
             first: "DOP853".into(),
             goes_on_stiff: false,
             h_initial: None,
+            left: None,
             h_max: f64::INFINITY,
             h_min: 0.0,
             max_order: None,

@@ -46,7 +46,7 @@ mod systems;
 
 use super::control::{self, Attempts, Rejection, Weights, worst, worst_index};
 use super::quadrature::{Node, RADAU_3, over_interpolant};
-use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
+use super::{Failure, Memory, Method, Ode, Options, Reason, Stats, Step, Stop};
 use collocation::{
     ALPHA, BETA, Begin, Convergence, GAMMA, KEEP_JACOBIAN_RATE, Newton, Polynomial, Stages,
     solve_collocation_system,
@@ -62,6 +62,9 @@ const NOISY_TOLERANCE: f64 = 1.3e-7;
 const STAGE_GAP: [f64; 2] = [collocation::C[0], collocation::C[1]];
 /// Most changes of the length of one step that [`Ode::place_step`] asks for.
 const MOST_PLACINGS: usize = 4;
+/// Difference of two steps, as a part of them, that is rounding of the times between which they
+/// lie: the factors of the matrices are the same.
+const SAME_STEP: f64 = 1e-9;
 /// Growth of the step, as a factor, up to which the factors of the matrices are kept.
 const KEEP_STEP: f64 = 1.2;
 /// Growth of the step, as a factor, over the one that the Jacobian was evaluated for, up to which
@@ -115,6 +118,17 @@ struct Freshness {
     h_factored: f64,
     /// step for which the Jacobian was evaluated, in s
     h_evaluated: f64,
+}
+
+/// The Jacobian of an integration that has ended, with its factors.
+///
+/// Another one that goes on in the same system may begin with them, even if constants have changed:
+/// its first iteration must show how it converges, and where J hides a residual it is evaluated
+/// anew, as within an integration.
+#[derive(Clone, Debug)]
+pub(super) struct Derivatives {
+    systems: Systems,
+    freshness: Freshness,
 }
 
 /// Radau IIA of order 5 with projection; see the file's card.
@@ -465,7 +479,7 @@ impl Radau {
         h: f64,
         t1: f64,
     ) -> Result<(f64, usize), Rejection> {
-        if h != self.freshness.h_factored {
+        if (h - self.freshness.h_factored).abs() > SAME_STEP * h {
             self.factor(h).map_err(|column| Rejection {
                 reason: Reason::Singular(column),
                 recoverable: true,
@@ -646,6 +660,28 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
         visit: &mut dyn FnMut(&mut P, Node<'_>),
     ) -> Result<(), Failure> {
         over_interpolant(self, problem, ends, &RADAU_3, work, visit)
+    }
+
+    fn leave(&mut self) -> Option<Memory> {
+        let n = self.begin.y.len();
+        let radau = Derivatives {
+            systems: std::mem::replace(&mut self.systems, Systems::new(n)),
+            freshness: self.freshness,
+        };
+        self.freshness.stale = true;
+        self.advanced.then_some(Memory {
+            step: self.control.h_next,
+            radau: Some(radau),
+        })
+    }
+
+    fn go_on(&mut self, memory: &Memory) {
+        self.control.h_next = memory.step;
+        let fits = |kept: &&Derivatives| self.systems.are_shaped_as(&kept.systems);
+        if let Some(kept) = memory.radau.as_ref().filter(fits) {
+            self.systems.clone_from(&kept.systems);
+            self.freshness = kept.freshness;
+        }
     }
 
     fn propose(&mut self, h: f64) {

@@ -129,6 +129,18 @@ impl Systems {
         }
     }
 
+    /// Returns whether others are for Jacobians of the same shape.
+    pub fn are_shaped_as(&self, other: &Self) -> bool {
+        self.n == other.n
+            && match (&self.kind, &other.kind) {
+                (Kind::Full(_), Kind::Full(_)) => true,
+                (Kind::Sparse(own), Kind::Sparse(other)) => {
+                    Arc::ptr_eq(&own.pattern, &other.pattern) || own.pattern == other.pattern
+                }
+                _ => false,
+            }
+    }
+
     /// Evaluates the Jacobian at `(t, y)`.
     ///
     /// # Errors

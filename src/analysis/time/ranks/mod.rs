@@ -126,10 +126,18 @@ fn gradients(scene: Configured<'_>, numbers: &[f64]) -> Vec<Vec<f64>> {
     all
 }
 
-/// Returns the rows to keep from here on, when those kept so far have become dependent though the
-/// mechanism has not, or a row that was left out no longer follows from them; `None`: they may
-/// stay.
-pub fn better_rows(scene: Configured<'_>, numbers: &[f64]) -> Option<Vec<bool>> {
+/// A judgement of the rows that take part.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Judgement {
+    /// they may stay; the least that any of them determines beyond the others
+    Right(f64),
+    /// the rows that are to take part instead
+    Better(Vec<bool>),
+}
+
+/// Judges the rows kept so far: others are better when these have become dependent though the
+/// mechanism has not, or a row that was left out no longer follows from them.
+pub fn better_rows(scene: Configured<'_>, numbers: &[f64]) -> Judgement {
     let kept = active(scene);
     let all = gradients(scene, numbers);
     let rows_of = |chosen: &[usize]| {
@@ -141,13 +149,17 @@ pub fn better_rows(scene: Configured<'_>, numbers: &[f64]) -> Option<Vec<bool>> 
     let every: Vec<usize> = (0..all.len()).collect();
     let is_kept = |r: usize| scene.configuration.active[r];
     let (better, most) = select(rows_of(&every), is_kept, usize::MAX);
-    if better == kept || better.len() < kept.len() {
-        return None;
+    if better == kept {
+        return Judgement::Right(most);
     }
     let (stay, least) = select(rows_of(&kept), |_| true, kept.len());
     let gains =
         better.len() > kept.len() || stay.len() < kept.len() || least < WORTH_EXCHANGING * most;
-    gains.then(|| (0..scene.rows.len()).map(|r| better.contains(&r)).collect())
+    match gains && better.len() >= kept.len() {
+        true => Judgement::Better((0..scene.rows.len()).map(|r| better.contains(&r)).collect()),
+        false if stay.len() < kept.len() => Judgement::Right(0.0),
+        false => Judgement::Right(least),
+    }
 }
 
 /// Moves a state onto all rows, also those that were left out, where that is possible with a small
