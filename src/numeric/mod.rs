@@ -357,6 +357,27 @@ pub struct Memory {
     radau: Option<radau::Derivatives>,
 }
 
+impl Memory {
+    /// Returns all numbers of it: what is made of them again goes on with the same bits.
+    pub fn numbers(&self) -> Vec<Vec<f64>> {
+        let more = self.radau.iter().flat_map(radau::Derivatives::numbers);
+        std::iter::once(vec![self.step]).chain(more).collect()
+    }
+
+    /// Makes it of its numbers; `None`: they are no such numbers.
+    pub fn of_numbers(mut numbers: Vec<Vec<f64>>) -> Option<Self> {
+        let more = numbers.split_off(numbers.len().min(1));
+        let [step] = numbers.first()?[..] else {
+            return None;
+        };
+        let radau = match more.is_empty() {
+            true => None,
+            false => Some(radau::Derivatives::of_numbers(more.try_into().ok()?)?),
+        };
+        (step.is_finite() && step > 0.0).then_some(Self { step, radau })
+    }
+}
+
 /// The contract of a method for problems of type `P`.
 ///
 /// A new method provides: its state at the end of the last accepted step (`t`, `y`, `ydot`); a step

@@ -194,3 +194,39 @@ fn each_acceleration_motion_goes_on_with_its_own_velocity() {
         }
     }
 }
+
+/// Methods of one step leave their step, RADAU5 its Jacobian too, to a simulation that goes on; several states between are as good as none.
+#[test]
+fn what_a_method_leaves_is_saved_with_the_state() {
+    let model = "what a method leaves\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=2, CM=20, IP=0.1,0.1,0.1\nMARKER/20, PART=2, QP=1,0,0\n\
+        MARKER/21, PART=2\nJOINT/1, REVOLUTE, I=21, J=1, IC=0.3,5\nACCGRAV/JGRAV=-9.81\nDIFF/1, IC=1, FUNCTION=2E3*(AZ(21,1)-DIF(1))\n\
+        SFORCE/1, ROTATION, I=21, J=1, FUNCTION=-300*DIF(1)-IMPACT(AZ(21,1),WZ(21,1),0.1,1E3,1.5,1,0.1)\nEND\n";
+    for method in ["RADAU5", "DOP853", "AUTO", "BDF"] {
+        let with = |text: &str| {
+            let mut options = options(&["AZ(21,1)", "WZ(21,1)", "DIF(1)"], 1e-6);
+            options.method = Some(method.into());
+            begin(whole(text), "saved", options)
+        };
+        let mut all = with(model);
+        let mut other = with(model);
+        for k in 1..=8 {
+            let end = 0.05 * f64::from(k);
+            go(&mut all, end);
+            go(&mut other, end);
+            let bits = |s: &Session| {
+                ["AZ(21,1)", "WZ(21,1)", "DIF(1)"]
+                    .map(|c| s.run.column(c).unwrap().last().unwrap().to_bits())
+            };
+            assert_eq!(bits(&other), bits(&all), "{method} at {end}");
+            let text = other.save();
+            let saved = Saved::read(text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+            other = with(model);
+            other.reload(saved).unwrap();
+            assert_eq!(
+                other.save(),
+                text,
+                "{method}: a state is saved as it was read"
+            );
+        }
+    }
+}

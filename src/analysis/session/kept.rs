@@ -119,6 +119,18 @@ pub(super) fn without_constants<T>(
     seen
 }
 
+/// Returns whether a model differs from one that was kept by nothing but constants that are external
+/// inputs.
+fn are_same(model: &mut Model, kept: &Model, scene: &Scene) -> bool {
+    without_constants(model, scene, |model| {
+        *model == *kept || {
+            // a state that was read has its constants
+            let mut kept = kept.clone();
+            without_constants(&mut kept, scene, |kept| *model == *kept)
+        }
+    })
+}
+
 impl Session {
     /// Returns the present model as the system of a simulation keeps it: that of the system which
     /// the simulation began with, where this is such a one.
@@ -131,8 +143,18 @@ impl Session {
     /// that of its system by nothing but constants that are external inputs.
     pub(super) fn left_before(&mut self, scene: &Scene) -> Option<Left> {
         let (model, left) = self.carried.as_ref()?.left.as_ref()?;
-        let is_same = self.goes_on || without_constants(&mut self.model, scene, |m| *m == **model);
+        let is_same = self.goes_on || are_same(&mut self.model, model, scene);
         is_same.then(|| left.clone())
+    }
+
+    /// Returns the same for a state that is saved, without changing the session.
+    pub(super) fn left_to_save(&self) -> Option<&Left> {
+        let (model, left) = self.carried.as_ref()?.left.as_ref()?;
+        let is_same = match &self.kept {
+            Some(kept) => are_same(&mut self.model.clone(), model, &kept.system.scene),
+            None => self.model == **model,
+        };
+        is_same.then_some(left)
     }
 
     /// Keeps what a method leaves with the state to which it has led.

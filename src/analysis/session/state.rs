@@ -8,9 +8,11 @@ use super::Session;
 use super::carried::Carried;
 use crate::analysis::system::past::Past;
 use crate::analysis::system::samples::Held;
+use crate::analysis::trajectory::Left;
 use crate::dataset;
 use crate::diagnostic::{Diagnostic, Error, Severity};
 use crate::model::{ElementId, ElementKind, Model};
+use crate::numeric::Memory;
 use crate::scene::history::{AngleId, DelayId};
 use crate::scene::layout::Layout;
 use crate::scene::unknown::{CoordinateId, MotionState, UnknownId};
@@ -18,6 +20,7 @@ use crate::space::{MarkerState, Mat3, Vec3};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::str::FromStr;
+use std::sync::Arc;
 
 /// The mark of these files, with the number of their form.
 const MARK: &str = "cognate_state";
@@ -83,10 +86,13 @@ impl Saved {
             };
             model.inactive.insert(kind.id(number));
         }
-        let carried = match &value["state"] {
+        let mut carried = match &value["state"] {
             Value::Null => None,
             state => Some(carried(state).ok_or_else(|| wrong("state"))?),
         };
+        if let (Some(carried), Some(left)) = (&mut carried, left(&value["left"])) {
+            carried.left = Some((Arc::new(model.clone()), left));
+        }
         Ok(Self { model, carried })
     }
 
@@ -108,6 +114,7 @@ impl Session {
             "model": self.model.to_text(),
             "inactive": inactive,
             "state": self.carried.as_ref().map(state),
+            "left": self.left_to_save().map(left_as_text),
         });
         format!("{value:#}\n")
     }
@@ -165,6 +172,19 @@ fn as_number(v: &Value) -> Option<f64> {
 
 fn as_numbers(v: &Value) -> Option<Vec<f64>> {
     v.as_array()?.iter().map(as_number).collect()
+}
+
+/// What the method has left: its name, and all numbers of its memory.
+fn left_as_text((method, memory): &Left) -> Value {
+    let lists: Value = memory.numbers().iter().map(|n| numbers(n)).collect();
+    json!({ "method": method, "memory": lists })
+}
+
+/// Reads it; files without it begin with HINIT.
+fn left(v: &Value) -> Option<Left> {
+    let lists = v["memory"].as_array()?.iter().map(as_numbers);
+    let memory = Memory::of_numbers(lists.collect::<Option<_>>()?)?;
+    Some((v["method"].as_str()?.to_string(), Arc::new(memory)))
 }
 
 fn state(c: &Carried) -> Value {

@@ -120,15 +120,45 @@ struct Freshness {
     h_evaluated: f64,
 }
 
-/// The Jacobian of an integration that has ended, with its factors.
+/// The Jacobian of an integration that has ended, with its age.
 ///
-/// Another one that goes on in the same system may begin with them, even if constants have changed:
+/// Another one that goes on in the same system may begin with it, even if constants have changed:
 /// its first iteration must show how it converges, and where J hides a residual it is evaluated
 /// anew, as within an integration.
 #[derive(Clone, Debug)]
 pub(super) struct Derivatives {
-    systems: Systems,
+    jacobian: Vec<f64>,
+    dfdt: Vec<f64>,
     freshness: Freshness,
+}
+
+impl Derivatives {
+    /// Returns all numbers of it: the Jacobian, the derivatives by time, its age.
+    pub fn numbers(&self) -> [Vec<f64>; 3] {
+        let f = self.freshness;
+        let flags = [f.here, f.stale].map(|is| f64::from(u8::from(is)));
+        let age = [flags[0], flags[1], f.h_factored, f.h_evaluated];
+        [self.jacobian.clone(), self.dfdt.clone(), age.to_vec()]
+    }
+
+    /// Takes them back; `None`: they are none of it.
+    pub fn of_numbers([jacobian, dfdt, age]: [Vec<f64>; 3]) -> Option<Self> {
+        let [here, stale, h_factored, h_evaluated] = age[..] else {
+            return None;
+        };
+        let is_finite = |x: &f64| x.is_finite();
+        let is_sound = jacobian.iter().chain(&dfdt).chain(&age).all(is_finite);
+        is_sound.then_some(Self {
+            jacobian,
+            dfdt,
+            freshness: Freshness {
+                here: here == 1.0,
+                stale: stale == 1.0,
+                h_factored,
+                h_evaluated,
+            },
+        })
+    }
 }
 
 /// Radau IIA of order 5 with projection; see the file's card.
@@ -663,9 +693,10 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
     }
 
     fn leave(&mut self) -> Option<Memory> {
-        let n = self.begin.y.len();
+        let (jacobian, dfdt) = self.systems.leave();
         let radau = Derivatives {
-            systems: std::mem::replace(&mut self.systems, Systems::new(n)),
+            jacobian,
+            dfdt,
             freshness: self.freshness,
         };
         self.freshness.stale = true;
@@ -677,10 +708,12 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
 
     fn go_on(&mut self, memory: &Memory) {
         self.control.h_next = memory.step;
-        let fits = |kept: &&Derivatives| self.systems.are_shaped_as(&kept.systems);
-        if let Some(kept) = memory.radau.as_ref().filter(fits) {
-            self.systems.clone_from(&kept.systems);
+        let Some(kept) = &memory.radau else { return };
+        if self.systems.take(&kept.jacobian, &kept.dfdt) {
             self.freshness = kept.freshness;
+            // factors follow from the Jacobian and the step
+            let h = kept.freshness.h_factored;
+            self.freshness.stale |= h != 0.0 && self.factor(h).is_err();
         }
     }
 

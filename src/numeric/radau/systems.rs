@@ -129,16 +129,23 @@ impl Systems {
         }
     }
 
-    /// Returns whether others are for Jacobians of the same shape.
-    pub fn are_shaped_as(&self, other: &Self) -> bool {
-        self.n == other.n
-            && match (&self.kind, &other.kind) {
-                (Kind::Full(_), Kind::Full(_)) => true,
-                (Kind::Sparse(own), Kind::Sparse(other)) => {
-                    Arc::ptr_eq(&own.pattern, &other.pattern) || own.pattern == other.pattern
-                }
-                _ => false,
-            }
+    /// Leaves the Jacobian and ∂f/∂t; nothing is left of them.
+    pub fn leave(&mut self) -> (Vec<f64>, Vec<f64>) {
+        let left = std::mem::replace(self, Systems::new(self.n));
+        (left.jacobian, left.dfdt)
+    }
+
+    /// Takes a Jacobian of the same shape, and ∂f/∂t; returns whether it is of that.
+    pub fn take(&mut self, jacobian: &[f64], dfdt: &[f64]) -> bool {
+        if self.jacobian.len() != jacobian.len() || self.dfdt.len() != dfdt.len() {
+            return false;
+        }
+        self.jacobian.copy_from_slice(jacobian);
+        self.dfdt.copy_from_slice(dfdt);
+        if let Kind::Full(full) = &mut self.kind {
+            full.see(&self.jacobian);
+        }
+        true
     }
 
     /// Evaluates the Jacobian at `(t, y)`.
