@@ -119,8 +119,8 @@ pub(super) fn without_constants<T>(
     seen
 }
 
-/// Returns whether a model differs from one that was kept by nothing but constants that are external
-/// inputs.
+/// Returns whether a model differs from one that was kept by nothing but constants that are
+/// external inputs.
 fn are_same(model: &mut Model, kept: &Model, scene: &Scene) -> bool {
     without_constants(model, scene, |model| {
         *model == *kept || {

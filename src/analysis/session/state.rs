@@ -174,7 +174,7 @@ fn as_numbers(v: &Value) -> Option<Vec<f64>> {
     v.as_array()?.iter().map(as_number).collect()
 }
 
-/// What the method has left: its name, and all numbers of its memory.
+/// Writes down the method that has left something, and all numbers of its memory.
 fn left_as_text((method, memory): &Left) -> Value {
     let lists: Value = memory.numbers().iter().map(|n| numbers(n)).collect();
     json!({ "method": method, "memory": lists })
