@@ -15,7 +15,7 @@ use super::session::columns::{name_of, unit_of};
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::Input;
-use crate::model::{ElementId, ElementKind, MarkerOwner, Model, Orientation, Text, geometry};
+use crate::model::{ElementId, ElementKind, Model, Orientation, Text, geometry};
 use crate::physics::kinematic;
 use crate::results::{Column, Run, digest};
 use crate::space::{Frame, MarkerState, Vec3, rotation};
@@ -237,16 +237,7 @@ pub fn marker_digest(model: &Model) -> String {
     let mut text = String::new();
     for (number, marker) in &model.markers {
         // writing to a text cannot fail
-        let _ = match (i32::try_from(*number), marker.owner) {
-            (Ok(number), MarkerOwner::Part(part)) if part <= i32::MAX as u32 => {
-                push_whole(&mut text, number);
-                text.push_str(" Part(");
-                push_whole(&mut text, part as i32);
-                text.push_str(") ");
-                Ok(())
-            }
-            _ => write!(text, "{number} {:?} ", marker.owner),
-        };
+        let _ = write!(text, "{number} {:?} ", marker.owner);
         push_numbers(&mut text, marker.qp);
         match marker.orientation {
             Orientation::Euler(angles) => {
@@ -275,27 +266,11 @@ fn push_numbers(text: &mut String, numbers: [f64; 3]) {
         text.push_str(if k > 0 { ", " } else { "" });
         let whole = x as i32;
         let _ = match x.abs() < SMALL && f64::from(whole).to_bits() == x.to_bits() {
-            true => {
-                push_whole(text, whole);
-                text.push_str(".0");
-                Ok(())
-            }
+            true => write!(text, "{whole}.0"),
             false => write!(text, "{x:?}"),
         };
     }
     text.push(']');
-}
-
-/// Appends a whole number as `{}` does.
-fn push_whole(text: &mut String, number: i32) {
-    let (mut left, mut digits, mut first) = (number.unsigned_abs(), [b'0'; 10], 10);
-    while left > 0 || first == 10 {
-        first -= 1;
-        digits[first] = b'0' + (left % 10) as u8;
-        left /= 10;
-    }
-    text.push_str(if number < 0 { "-" } else { "" });
-    text.extend(digits[first..].iter().map(|&digit| char::from(digit)));
 }
 
 #[cfg(test)]

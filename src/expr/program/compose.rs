@@ -19,8 +19,8 @@ use super::run::Program;
 use super::schedule;
 use std::sync::Arc;
 
-/// Components of a kind from which on they are run by themselves: copying the constants of a member
-/// and gathering its inputs takes about as long as the processor takes to read other code.
+/// Components of a kind from which on they are run by themselves: with fewer there is little to
+/// share, and sines of one are no longer found together with those of another.
 const FEWEST: usize = 4;
 
 /// Returns the program that computes `outputs`, and the nodes that its constants are.
