@@ -49,6 +49,7 @@ pub mod untouchable;
 use crate::expr::measures::Measure;
 use crate::expr::program::Program;
 use crate::model::{ElementId, ElementKind, Level};
+use crate::numeric::connected::{SparseRow, connected};
 use crate::physics::coupler::Gauge;
 use crate::physics::row::Law;
 use crate::scene::asker::Asker;
@@ -492,24 +493,17 @@ impl Scene {
     /// Returns how many groups of links move that nothing but forces can couple: links with what
     /// carries them, and those that constraints join.
     pub fn n_mechanisms(&self) -> usize {
-        let mut joined: Vec<usize> = (0..self.links.len()).collect();
-        for (k, link) in self.links.iter().enumerate() {
-            joined[k] = link.parent.map_or(k, |parent| joined[parent]);
-        }
-        let root = |joined: &mut Vec<usize>, mut k: usize| {
-            while joined[k] != k {
-                joined[k] = joined[joined[k]];
-                k = joined[k];
-            }
-            k
-        };
-        for (i, j) in self.constraints.iter().filter_map(|c| c.markers) {
-            if let [Some(i), Some(j)] = [i, j].map(|m| self.markers[m].link) {
-                let (i, j) = (root(&mut joined, i), root(&mut joined, j));
-                joined[i.max(j)] = i.min(j);
-            }
-        }
-        joined.iter().enumerate().filter(|(k, j)| k == *j).count()
+        let joined = |links: &mut dyn Iterator<Item = usize>| links.map(|l| (l, 1.0)).collect();
+        let links = self.links.iter().enumerate();
+        let carried =
+            links.map(|(l, link)| joined(&mut [Some(l), link.parent].into_iter().flatten()));
+        let mut rows: Vec<SparseRow> = carried.collect();
+        let pairs = self.constraints.iter().filter_map(|c| c.markers);
+        rows.extend(pairs.filter_map(|(i, j)| {
+            let [i, j] = [i, j].map(|m| self.markers[m].link);
+            Some(joined(&mut [i?, j?].into_iter()))
+        }));
+        connected(&rows, self.links.len()).len()
     }
 
     /// Returns which links show no inertia to what carries them, whatever moves: rigid ones without
