@@ -6,7 +6,7 @@
 
 use super::operation::{BinaryOp, Comparison, UnaryOp, arithmetic_if, from_mask, truth};
 use crate::expr::functions::Function;
-use crate::scalar::{Dual, Scalar, Table};
+use crate::scalar::{Dual, Exponent, Scalar, Table};
 use std::ops::{Deref, Range};
 use std::sync::Arc;
 
@@ -199,7 +199,7 @@ impl Core {
             Code::Unary(op) => op.apply(r(a)),
             Code::Whole(n) => r(a).powi(n),
             Code::Binary(op) => op.apply(r(a), r(b)),
-            Code::HalfPower(n) => r(c).powf(S::constant(f64::from(n) + 0.5)),
+            Code::HalfPower(n) => half_power(n, r(a) * r(b), r(c)),
             Code::Compare(op) => from_mask(op.apply(r(a), r(b))),
             Code::Select => S::select(truth(r(a)), r(b), r(c)),
             Code::CompareSelect(op) => S::select(op.apply(r(a), r(b)), r(c), r(d)),
@@ -213,6 +213,19 @@ impl Core {
             }),
         };
     }
+}
+
+/// Returns `product` = xⁿ √x, n ≥ 1, with derivatives at x = 0, too, where those of the root are
+/// not finite. The value is the product's to the bit, also where a power of the exponent n + 1/2
+/// would be rounded otherwise.
+#[inline(always)]
+fn half_power<S: Scalar>(n: i32, product: S, x: S) -> S {
+    let exponent = f64::from(n) + 0.5;
+    if Exponent::of(exponent) == Exponent::Half(n) {
+        return x.powf(S::constant(exponent));
+    }
+    // as flat at 0 as the product, and with the sign of its zero
+    S::choose(x.same(S::constant(0.0)), || x.powi(n) * x, || product)
 }
 
 /// Evaluates a function of arguments that are gathered from the registers.
