@@ -23,6 +23,10 @@ use std::f64::consts::FRAC_2_PI;
 /// the doubles nearest to multiples of π/2.
 const LARGEST_REDUCED: f64 = 12_000.0;
 
+/// Largest angle, in rad, that is surely the remainder itself: not quite π/4. A single angle that is
+/// no larger waits for no reduction, which takes as long as all the rest.
+const LARGEST_WITHIN: f64 = 0.785;
+
 /// π/2 in three parts: 33 bits, the next 33, the rest.
 const HALF_PI_PARTS: [f64; 3] = [
     1.570_796_326_734_125_6,
@@ -57,9 +61,11 @@ const SINE_IS_ANGLE: f64 = 1e-8;
 const TANGENT_IS_ANGLE: f64 = 1e-9;
 
 /// Returns sine and cosine of an angle in radians.
-#[inline]
+#[inline(always)]
 pub fn sin_cos(x: f64) -> (f64, f64) {
-    if x.abs() <= LARGEST_REDUCED {
+    if x.abs() <= LARGEST_WITHIN {
+        of_reduced(x, 0, [x, 0.0])
+    } else if x.abs() <= LARGEST_REDUCED {
         near(x)
     } else {
         far(x)
@@ -133,7 +139,13 @@ fn polynomials(z: f64) -> [f64; 2] {
 /// Reduces and evaluates without any branch, so that several angles run in parallel.
 #[inline(always)]
 fn near(x: f64) -> (f64, f64) {
-    let (quarters, [r, rho]) = reduced(x);
+    let (quarters, r) = reduced(x);
+    of_reduced(x, quarters, r)
+}
+
+/// Returns sine and cosine of an angle that is n quarter turns and r + ρ.
+#[inline(always)]
+fn of_reduced(x: f64, quarters: u64, [r, rho]: [f64; 2]) -> (f64, f64) {
     let z = r * r;
     let half = 0.5 * z;
     let [s, c] = polynomials(z);
