@@ -45,9 +45,75 @@ impl Moment {
     }
 }
 
+/// Questions that are answered without reading the clock, while they come fast.
+const UNREAD: u8 = 15;
+
+/// A time that is waited for, and asked about so often that reading the clock each time would cost:
+/// while questions come fast it is read at every sixteenth.
+#[derive(Clone, Copy, Debug)]
+pub struct Wait {
+    begun: Moment,
+    longest: Duration,
+    /// when the clock was read last
+    read: Moment,
+    /// questions until it is read again
+    left: u8,
+}
+
+impl Wait {
+    /// Begins to wait.
+    pub fn begin(longest: Duration) -> Self {
+        let now = Moment::now();
+        Self {
+            begun: now,
+            longest,
+            read: now,
+            left: 0,
+        }
+    }
+
+    /// Returns whether it is over: late by a quarter of the time at most, where questions do not
+    /// suddenly come more slowly.
+    #[inline]
+    pub fn is_over(&mut self) -> bool {
+        match self.left.checked_sub(1) {
+            Some(left) => {
+                self.left = left;
+                false
+            }
+            None => self.look(),
+        }
+    }
+
+    fn look(&mut self) -> bool {
+        let now = Moment::now();
+        let between = now.0.saturating_sub(self.read.0);
+        let is_fast = between < self.longest / (4 * u32::from(UNREAD + 1));
+        self.left = if is_fast { UNREAD } else { 0 };
+        self.read = now;
+        now.0.saturating_sub(self.begun.0) >= self.longest
+    }
+}
+
 impl Add<Duration> for Moment {
     type Output = Self;
     fn add(self, time: Duration) -> Self {
         Self(self.0.saturating_add(time))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wait_ends_however_often_it_is_asked_about() {
+        assert!(Wait::begin(Duration::ZERO).is_over());
+        let mut long = Wait::begin(Duration::from_secs(3600));
+        assert!((0..1000).all(|_| !long.is_over()));
+        let (begun, longest) = (Moment::now(), Duration::from_millis(2));
+        let mut short = Wait::begin(longest);
+        while !short.is_over() {}
+        assert!(begun.elapsed() >= longest);
     }
 }

@@ -100,7 +100,12 @@ impl Course {
             }
             m = size;
         }
-        let level = BOUNDS.iter().filter(|&&bound| size <= bound * m).count();
+        // most are on the first level, or at rest
+        let is_above = |bound: &f64| size > bound * m || size.is_nan();
+        let level = match size == 0.0 {
+            true => LEVELS,
+            false => BOUNDS.iter().position(is_above).unwrap_or(LEVELS),
+        };
         let reached = level.min(self.level);
         self.level = level;
         if reached < LEVELS {
@@ -193,11 +198,12 @@ impl Weights {
         let dt = (t - self.seen).max(0.0);
         self.seen = t;
         self.coarse = false;
+        let least = ROUNDINGS * f64::EPSILON / self.tolerance;
         let all = self.magnitude.iter_mut().zip(y).zip(&mut self.courses);
         let places = self.typical.iter().zip(&self.origin);
         for (((m, y), course), (typical, origin)) in all.zip(places) {
             let way = course.see((y - origin).abs(), *m, (t, dt));
-            let rounded = ROUNDINGS * f64::EPSILON / self.tolerance * origin.abs();
+            let rounded = least * origin.abs();
             *m = way.max(typical * self.floor).max(rounded);
             self.coarse |= rounded > typical.max(way);
         }

@@ -13,7 +13,7 @@ use crate::analysis::system::System;
 use crate::analysis::trajectory::Trajectory;
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
-use crate::clock::Moment;
+use crate::clock::{Moment, Wait};
 use crate::expr::program::{Program, Work};
 use crate::numeric::Stats;
 use crate::results::{Kind, Run};
@@ -238,7 +238,8 @@ pub(super) struct Follower<'a> {
     is_kept: bool,
     /// all numbers at the end of the last step, where somebody reads them
     visited: Vec<f64>,
-    last: Moment,
+    /// for how long rows are held back
+    wait: Wait,
 }
 
 impl<'a> Follower<'a> {
@@ -255,7 +256,7 @@ impl<'a> Follower<'a> {
             watch,
             is_kept,
             visited: Vec::new(),
-            last: Moment::now(),
+            wait: Wait::begin(LONGEST_WAIT),
         }
     }
 }
@@ -280,7 +281,7 @@ impl Watch for Follower<'_> {
         let n = trajectory.rows.len();
         let wait = self.session.receiver.is_none()
             || self.session.options.accuracy
-            || n < ROWS_AT_ONCE && (n < 2 || self.last.elapsed() < LONGEST_WAIT);
+            || n < ROWS_AT_ONCE && (n < 2 || !self.wait.is_over());
         if wait {
             return;
         }
@@ -293,6 +294,6 @@ impl Watch for Follower<'_> {
         } else {
             trajectory.release(until);
         }
-        self.last = Moment::now();
+        self.wait = Wait::begin(LONGEST_WAIT);
     }
 }

@@ -162,11 +162,19 @@ impl Branches {
     /// Puts numbers and sides into the row that held programs read. Unknowns of loops stay what
     /// they were, where the numbers do not say them.
     pub(super) fn put(&mut self, numbers: &[f64]) {
-        self.numbers.resize(self.row.len(), 0.0);
-        self.row.put(&mut self.numbers, numbers, &self.sides);
+        let LongRow {
+            n_more, n_sides, ..
+        } = self.row;
+        if self.numbers.len() != numbers.len() + n_more + n_sides {
+            self.numbers.resize(self.row.len(), 0.0);
+        }
+        let (front, behind) = self.numbers.split_at_mut(numbers.len());
+        front.copy_from_slice(numbers);
+        let (more, sides) = behind.split_at_mut(n_more);
+        sides.copy_from_slice(&self.sides);
         let known = self.row.numbers.loops();
         if !known.is_empty() {
-            self.numbers[self.row.more()].copy_from_slice(&numbers[known]);
+            more.copy_from_slice(&numbers[known]);
         }
     }
 
