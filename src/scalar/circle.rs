@@ -23,9 +23,15 @@ use std::f64::consts::FRAC_2_PI;
 /// the doubles nearest to multiples of π/2.
 const LARGEST_REDUCED: f64 = 12_000.0;
 
-/// Largest angle, in rad, that is surely the remainder itself: not quite π/4. A single angle that is
-/// no larger waits for no reduction, which takes as long as all the rest.
-const LARGEST_WITHIN: f64 = 0.785;
+/// Sizes of angles, in rad, up to and from which it is plain how many quarter turns are nearest:
+/// none, one, two. They are not quite the odd multiples of π/4.
+const PLAINLY_NONE: f64 = 0.785;
+const PLAINLY_ONE: [f64; 2] = [0.786, 2.356];
+const PLAINLY_TWO: [f64; 2] = [2.357, 3.926];
+
+/// Size of an angle without its quarter turns, in rad, from which on it is larger than what one or
+/// two quarter turns have in their second part.
+const BEYOND_SECOND_PART: f64 = 1e-9;
 
 /// π/2 in three parts: 33 bits, the next 33, the rest.
 const HALF_PI_PARTS: [f64; 3] = [
@@ -33,6 +39,9 @@ const HALF_PI_PARTS: [f64; 3] = [
     6.077_100_506_303_966e-11,
     2.022_266_248_795_950_6e-21,
 ];
+
+/// Bit of the sign.
+const SIGN: u64 = 1 << 63;
 
 /// Coefficients of S: (sin r/r − 1)/z over z.
 const S: [f64; 6] = [
@@ -61,11 +70,32 @@ const SINE_IS_ANGLE: f64 = 1e-8;
 const TANGENT_IS_ANGLE: f64 = 1e-9;
 
 /// Returns sine and cosine of an angle in radians.
+///
+/// A single angle is waited for: what takes longest is to learn how many quarter turns to take off,
+/// and then to take them off. Where their number is plain, the processor goes ahead with it.
 #[inline(always)]
 pub fn sin_cos(x: f64) -> (f64, f64) {
-    if x.abs() <= LARGEST_WITHIN {
-        of_reduced(x, 0, [x, 0.0])
-    } else if x.abs() <= LARGEST_REDUCED {
+    if x.abs() <= PLAINLY_NONE {
+        let (sine, cosine) = of_remainder([x, 0.0]);
+        (unless_small(x, sine), cosine)
+    } else {
+        beyond_an_eighth(x)
+    }
+}
+
+/// Returns sine and cosine of an angle beyond an eighth of a turn, or of what is no number: the
+/// same bits as [`near`], sooner.
+#[inline(never)]
+fn beyond_an_eighth(x: f64) -> (f64, f64) {
+    let (size, sign) = (x.abs(), x.to_bits() & SIGN);
+    let signed = |y: f64| f64::from_bits(y.to_bits() ^ sign);
+    if (PLAINLY_ONE[0]..=PLAINLY_ONE[1]).contains(&size) {
+        let (sine, cosine) = of_remainder(without(size, 1.0));
+        (signed(cosine), -sine)
+    } else if (PLAINLY_TWO[0]..=PLAINLY_TWO[1]).contains(&size) {
+        let (sine, cosine) = of_remainder(without(size, 2.0));
+        (signed(-sine), -cosine)
+    } else if size <= LARGEST_REDUCED {
         near(x)
     } else {
         far(x)
@@ -126,6 +156,24 @@ fn reduced(x: f64) -> (u64, [f64; 2]) {
     (shifted.to_bits(), [r, (difference - r) - less])
 }
 
+/// Returns r + ρ of an angle without one or two quarter turns, as [`reduced`] does.
+#[inline(always)]
+fn without(x: f64, n: f64) -> [f64; 2] {
+    let [first, second, rest] = HALF_PI_PARTS;
+    let (a, b) = (x - n * first, n * second);
+    let difference = a - b;
+    // what rounding lost takes two operations where `a` is the larger, else four
+    let lost = if a.abs() >= BEYOND_SECOND_PART {
+        (a - difference) - b
+    } else {
+        let part = difference - a;
+        (a - (difference - part)) - (b + part)
+    };
+    let less = n * rest - lost;
+    let r = difference - less;
+    [r, (difference - r) - less]
+}
+
 /// Returns S and C at z = r².
 #[inline(always)]
 fn polynomials(z: f64) -> [f64; 2] {
@@ -136,23 +184,30 @@ fn polynomials(z: f64) -> [f64; 2] {
     ]
 }
 
-/// Reduces and evaluates without any branch, so that several angles run in parallel.
+/// Returns sine and cosine of r + ρ.
 #[inline(always)]
-fn near(x: f64) -> (f64, f64) {
-    let (quarters, r) = reduced(x);
-    of_reduced(x, quarters, r)
-}
-
-/// Returns sine and cosine of an angle that is n quarter turns and r + ρ.
-#[inline(always)]
-fn of_reduced(x: f64, quarters: u64, [r, rho]: [f64; 2]) -> (f64, f64) {
+fn of_remainder([r, rho]: [f64; 2]) -> (f64, f64) {
     let z = r * r;
     let half = 0.5 * z;
     let [s, c] = polynomials(z);
     let sine = r + (r * (z * s) + rho * (1.0 - half));
     let most = 1.0 - half;
     let cosine = most + (((1.0 - most) - half) + (z * z * c - r * rho));
-    let sine = if x.abs() < SINE_IS_ANGLE { x } else { sine };
+    (sine, cosine)
+}
+
+/// Returns the sine of an angle, or the angle itself where that is small.
+#[inline(always)]
+fn unless_small(x: f64, sine: f64) -> f64 {
+    if x.abs() < SINE_IS_ANGLE { x } else { sine }
+}
+
+/// Reduces and evaluates without any branch, so that several angles run in parallel.
+#[inline(always)]
+fn near(x: f64) -> (f64, f64) {
+    let (quarters, r) = reduced(x);
+    let (sine, cosine) = of_remainder(r);
+    let sine = unless_small(x, sine);
 
     // quarter turns: exchange sine and cosine where odd, set signs by the second bit
     let odd = 0u64.wrapping_sub(quarters & 1);
@@ -251,6 +306,32 @@ mod tests {
             assert!(s.is_nan() && c.is_nan());
         }
         agrees(1e300);
+    }
+
+    #[test]
+    fn a_single_angle_is_the_same_bits_with_and_without_going_ahead() {
+        let same = |x: f64| {
+            let (one, other) = (sin_cos(x), near(x));
+            let bits = |(s, c): (f64, f64)| (s.to_bits(), c.to_bits());
+            assert_eq!(bits(one), bits(other), "{x:e}");
+        };
+        (0..400_000).for_each(|k| same(f64::from(k) * 2.618_034e-5 - 5.0));
+        let bounds = [PLAINLY_ONE, PLAINLY_TWO].concat();
+        for at in (0..6).map(|k| f64::from(k) * FRAC_PI_2).chain(bounds) {
+            // outwards from the angle, ever farther
+            for k in -1100..0 {
+                let by = f64::powf(1.02, f64::from(2 * k));
+                [at + by, at - by, -at + by, -at - by]
+                    .into_iter()
+                    .for_each(same);
+            }
+            [at, -at, at.next_up(), at.next_down()]
+                .into_iter()
+                .for_each(same);
+        }
+        [PLAINLY_NONE, -PLAINLY_NONE, f64::MIN_POSITIVE, 1e-8, -1e-9]
+            .into_iter()
+            .for_each(same);
     }
 
     #[test]
