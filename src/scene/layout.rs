@@ -273,9 +273,12 @@ impl LongRow {
         false
     }
     /// Puts the numbers of a state and sides into the row.
+    #[inline]
     pub fn put(&self, row: &mut [f64], numbers: &[f64], sides: &[f64]) {
         row[..self.numbers.len()].copy_from_slice(numbers);
-        row[self.sides()].copy_from_slice(sides);
+        if self.n_sides > 0 {
+            row[self.sides()].copy_from_slice(sides);
+        }
     }
     /// Splits a row that may lack sides into its numbers and the further ones.
     pub fn split<'r, S>(&self, row: &'r [S]) -> (&'r [S], &'r [S]) {

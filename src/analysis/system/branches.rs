@@ -37,6 +37,8 @@ pub struct Branches {
     holding: bool,
     /// sides of the switches, as the held rate reads them   (n_switches)
     sides: Vec<f64>,
+    /// whether the row has these sides
+    pub(super) row_has_sides: bool,
     /// switches at which the motion stays while branches are held
     pub(super) slides: Slides,
     /// angles that decide a branch again in every turn
@@ -76,6 +78,7 @@ impl Branches {
             numbers: Vec::new(),
             holding: false,
             sides: vec![0.0; n],
+            row_has_sides: false,
             slides: Slides::default(),
             numbers_of_steps: Vec::new(),
             is_aside: false,
@@ -139,12 +142,14 @@ impl Branches {
         self.slide([]);
         self.sides.clear();
         self.sides.extend(sides.iter().map(|&s| f64::from(s)));
+        self.row_has_sides = false;
         self.holding = self.can_hold();
     }
 
     /// Exchanges the sides of the switches: a look at another branch.
     pub(super) fn exchange_sides(&mut self, sides: &mut Vec<f64>) {
         std::mem::swap(&mut self.sides, sides);
+        self.row_has_sides = false;
     }
 
     /// Takes the branch that the state says from now on.
@@ -167,14 +172,15 @@ impl Branches {
         } = self.row;
         if self.numbers.len() != numbers.len() + n_more + n_sides {
             self.numbers.resize(self.row.len(), 0.0);
+            self.row_has_sides = false;
         }
         let (front, behind) = self.numbers.split_at_mut(numbers.len());
         front.copy_from_slice(numbers);
-        let (more, sides) = behind.split_at_mut(n_more);
-        sides.copy_from_slice(&self.sides);
-        let known = self.row.numbers.loops();
-        if !known.is_empty() {
-            more.copy_from_slice(&numbers[known]);
+        if !std::mem::replace(&mut self.row_has_sides, true) {
+            behind[n_more..].copy_from_slice(&self.sides);
+        }
+        if self.row.numbers.n_loops > 0 {
+            behind[..n_more].copy_from_slice(&numbers[self.row.numbers.loops()]);
         }
     }
 
@@ -207,6 +213,7 @@ impl Branches {
         };
         loops.exchange_factors();
         self.is_aside = !self.is_aside;
+        self.row_has_sides = false;
         if self.is_aside {
             self.numbers_of_steps.clone_from(&self.numbers);
         } else {

@@ -307,6 +307,7 @@ impl Branches {
         self.slides.base.resize(n, 0.0);
         self.slides.changes.resize(n * m, 0.0);
         self.slides.alpha.resize(m, 0.0);
+        self.row_has_sides = false;
         for place in 0..m {
             self.numbers[row.side_at(self.slides.which[place])] = -1.0;
         }
