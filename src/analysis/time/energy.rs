@@ -178,8 +178,8 @@ fn by_rules(power: &mut impl FnMut(f64) -> [f64; 3], [a, b]: [f64; 2]) -> Piece 
     Piece { works, error }
 }
 
-/// Steps of which each is timed, and from then on each of so many: reading the clock twice is a
-/// tenth of what a small account takes.
+/// The first steps are timed each, as many as this, and after them one of as many, which counts for
+/// all: reading the clock twice takes a tenth of a small account.
 const TIMED: u32 = 16;
 
 /// The account of a leg: scratch, and when the balance is looked at next.
