@@ -236,6 +236,7 @@ impl Accountant {
         let n = self.n_steps;
         self.n_steps = n.wrapping_add(1);
         let counts_for = if n < TIMED { 1 } else { TIMED };
-        (n % counts_for == 0).then(|| (Moment::now(), counts_for))
+        n.is_multiple_of(counts_for)
+            .then(|| (Moment::now(), counts_for))
     }
 }

@@ -276,3 +276,37 @@ pub(super) fn partial<S: Scalar>(function: Function, args: &[S], k: usize) -> S 
         over_duals::<S, 40>(function, args, k)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::program::{Builder, Folding, Input, Work};
+    use crate::scalar::Lanes;
+
+    #[test]
+    fn a_power_times_the_root_of_its_base_is_their_product_in_every_evaluation() {
+        for n in 1..40 {
+            let mut builder = Builder::new(Folding::Strict);
+            let input = builder.input(Input::Slot(0));
+            let (whole, root) = (builder.powi(input, n), builder.unary(UnaryOp::Sqrt, input));
+            let product = builder.binary(BinaryOp::Mul, whole, root);
+            let program = builder.finish(&[product]);
+            for x in [0.0, -0.0, 0.5603884774161568, 1.0, 1.3, 2.0, -1.0] {
+                let want = Scalar::powi(x, n) * f64::sqrt(x);
+                let is_it =
+                    |got: f64| got.to_bits() == want.to_bits() || got.is_nan() && want.is_nan();
+                assert!(is_it(program.value(&[x], &mut Work::default())), "{n} {x}");
+                let mut out = [Lanes([0.0; 2])];
+                program.eval(&[Lanes([x, 1.0])], &mut Work::default(), &mut out);
+                assert!(is_it(out[0].0[0]), "{n} {x}: {} {want}", out[0].0[0]);
+                let mut out = [Dual::<1>::constant(0.0)];
+                program.eval(&[Dual::variable(x, 0)], &mut Work::default(), &mut out);
+                assert!(is_it(out[0].re), "{n} {x}: {} {want}", out[0].re);
+                let (exponent, got) = (f64::from(n) + 0.5, out[0].eps[0]);
+                let slope = exponent * f64::powf(x, exponent - 1.0);
+                let is_slope = x < 0.0 || (got - slope).abs() <= 1e-13 * slope;
+                assert!(is_slope, "{n} {x}: {got} {slope}");
+            }
+        }
+    }
+}

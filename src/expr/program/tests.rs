@@ -322,51 +322,6 @@ proptest! {
     }
 }
 
-#[test]
-fn a_power_times_the_root_of_its_base_is_their_product_in_every_evaluation() {
-    let x = || Box::new(Formula::Input(0));
-    for n in 1..40 {
-        let root = Formula::Unary(UnaryOp::Sqrt, x());
-        let f = Formula::Binary(
-            BinaryOp::Mul,
-            Box::new(Formula::Whole(n, x())),
-            Box::new(root),
-        );
-        let mut builder = Builder::new(Folding::Strict);
-        let output = record(&f, &mut builder);
-        let program = builder.finish_with_inputs(&[output], &layout());
-        let exponent = f64::from(n) + 0.5;
-        for x in [0.0, -0.0, 0.5603884774161568, 1.0, 1.3, 2.0, -1.0] {
-            let (mut work, want) = (Work::default(), f.eval(&[x]));
-            let at = |k: usize| if k == 0 { x } else { 0.0 };
-            let mut out = [Lanes([0.0; 2])];
-            let lanes: [_; N] = std::array::from_fn(|k| Lanes([at(k), 1.0]));
-            program.eval(&lanes, &mut Work::default(), &mut out);
-            assert!(
-                same_bits(out[0].0[0], want),
-                "{n} {x}: {} {want}",
-                out[0].0[0]
-            );
-            assert!(same_bits(
-                program.value(&std::array::from_fn::<_, N, _>(at), &mut work),
-                want
-            ));
-            let mut out = [Dual::constant(0.0)];
-            let duals: [Dual<N>; N] = std::array::from_fn(|k| Dual::variable(at(k), k));
-            program.eval(&duals, &mut Work::default(), &mut out);
-            assert!(same_bits(out[0].re, want), "{n} {x}: {} {want}", out[0].re);
-            if x >= 0.0 {
-                let slope = exponent * x.powf(exponent - 1.0);
-                let got = out[0].eps[0];
-                assert!(
-                    (got - slope).abs() <= 1e-13 * slope,
-                    "{n} {x}: {got} {slope}"
-                );
-            }
-        }
-    }
-}
-
 /// Value and derivatives of a formula by duals and by the adjoint, where both are numbers.
 fn two_gradients(f: &Formula, x: &[f64; N]) -> Option<([f64; N], [f64; N])> {
     let duals: Vec<Dual<N>> = (0..N).map(|k| Dual::variable(x[k], k)).collect();
