@@ -9,6 +9,7 @@ use super::output::Tables;
 use super::{Exit, complain, interrupt, remark, summary};
 use crate::analysis::session::{Activity, Session};
 use crate::analysis::work_limit::ProcessClock;
+use crate::dataset::command::{Command, Step};
 use crate::results::{Event, Run, Status};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -44,6 +45,15 @@ pub fn seconds(text: &str) -> Result<f64, String> {
             Err("a duration is a positive number of seconds, or as 500ms, 60s, 2min, 1h".into())
         }
     }
+}
+
+/// Returns the number of commands that simulate, if only writing is left after the last of them;
+/// `None`: other commands come then, whose work has results to lose.
+pub fn simulations_to_the_end(steps: &[Step]) -> Option<usize> {
+    let simulates = |step: &&Step| matches!(step.command, Command::Simulate(_));
+    let last = steps.iter().rfind(|s| !matches!(s.command, Command::Stop));
+    last.filter(simulates)?;
+    Some(steps.iter().filter(simulates).count())
 }
 
 /// The state that the guard shares with the run.
@@ -225,6 +235,31 @@ fn end(shared: &mut Shared, ending: Ending) -> ! {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn results_are_guarded_until_the_last_simulation_has_ended() {
+        use crate::dataset::command::Script;
+        let simulate = "SIMULATE/DYNAMIC, END=1, STEPS=2\n";
+        let longer = "SIMULATE/DYNAMIC, END=2, STEPS=2\n";
+        for (commands, expected) in [
+            (vec![], None),
+            (vec!["STOP\n"], None),
+            (vec![simulate], Some(1)),
+            (vec![simulate, "STOP\n"], Some(1)),
+            (vec![simulate, longer], Some(2)),
+            (
+                vec![simulate, "DEACTIVATE/SFORCE, ID=1\n", longer, "STOP\n"],
+                Some(2),
+            ),
+            // what comes then may take long
+            (vec![simulate, "LINEAR/EIGENSOL\n", "STOP\n"], None),
+            (vec![simulate, "SAVE/SYSTEM=s\n"], None),
+        ] {
+            let script = Script::from_text(&format!("FILE/MODEL=m\n{}", commands.concat()));
+            let steps = script.expect("commands").steps;
+            assert_eq!(simulations_to_the_end(&steps), expected, "{commands:?}");
+        }
+    }
 
     #[test]
     fn durations_are_read_as_people_type_them() {

@@ -11,8 +11,8 @@ use std::io::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Bytes of text that are collected before they go to the file.
-const BUFFER: usize = 1 << 20;
+/// Bytes of text that are collected before they go to the file: memory that stays in the caches.
+const BUFFER: usize = 1 << 16;
 
 /// A file beside its place.
 #[derive(Debug)]
@@ -142,14 +142,15 @@ impl<T: TableText> TextSink<T> {
     }
 }
 
-/// Rows that become text between two looks at its length.
-const ROWS_AT_ONCE: usize = 256;
+/// Numbers that become text between two looks at its length, as whole rows.
+const NUMBERS_AT_ONCE: usize = 2048;
 
 impl<T: TableText> Sink for TextSink<T> {
     fn rows(&mut self, run: &Run, rows: Range<usize>) -> Result<(), Diagnostic> {
         self.begin(run);
-        for from in rows.clone().step_by(ROWS_AT_ONCE) {
-            let some = from..rows.end.min(from + ROWS_AT_ONCE);
+        let at_once = (NUMBERS_AT_ONCE / run.columns.len().max(1)).max(1);
+        for from in rows.clone().step_by(at_once) {
+            let some = from..rows.end.min(from + at_once);
             self.table.rows(run, some, &mut self.text);
             if self.text.len() > BUFFER {
                 self.write()?;

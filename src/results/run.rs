@@ -57,8 +57,10 @@ impl Column {
     /// Returns a column of the same name and unit without values.
     pub fn empty(&self) -> Self {
         Self {
+            name: self.name.clone(),
+            unit: self.unit.clone(),
             values: Vec::new(),
-            ..self.clone()
+            bar_of: self.bar_of,
         }
     }
 }
