@@ -40,7 +40,7 @@ pub(super) fn script(text: &str) -> Option<Syntax> {
 /// Reads comments and statements to the end of the text, or to the statement END where it `ends`
 /// the text.
 fn items(text: &str, mut reader: Reader, mut syntax: Syntax, ends: bool) -> Option<Syntax> {
-    let mut name = None;
+    let (mut name, mut tokens) = (None, Vec::new());
     while let Some(byte) = reader.here() {
         match byte {
             b' ' | b'\t' | b'\n' | b'\r' => {
@@ -58,11 +58,12 @@ fn items(text: &str, mut reader: Reader, mut syntax: Syntax, ends: bool) -> Opti
                 return Some(syntax);
             }
             _ => {
-                let tokens = reader.statement()?;
+                tokens.clear();
+                reader.statement(&mut tokens)?;
                 let (first, last) = (tokens.first()?.span, tokens.last()?.span);
                 syntax.items.push(Item::Statement(Tokens {
                     span: Span::new(first.start, last.end),
-                    tokens,
+                    tokens: tokens.clone(),
                     name: name.take(),
                 }));
             }
@@ -160,16 +161,15 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a statement that begins with a word.
-    fn statement(&mut self) -> Option<Vec<Token>> {
-        let mut tokens = Vec::new();
+    /// Reads a statement that begins with a word; its tokens are put behind none.
+    fn statement(&mut self, tokens: &mut Vec<Token>) -> Option<()> {
         loop {
             self.blanks();
             let start = self.at;
             let kind = match self.here() {
-                None | Some(b'\n' | b'\r' | b'!') => match self.continuation(&mut tokens)? {
+                None | Some(b'\n' | b'\r' | b'!') => match self.continuation(tokens)? {
                     true => continue,
-                    false => return Some(tokens),
+                    false => return Some(()),
                 },
                 Some(b'=') => TokenKind::Equals,
                 Some(b'/') => TokenKind::Slash,

@@ -135,9 +135,11 @@ impl<'a> Reader<'a> {
                 TokenKind::Comma | TokenKind::Continuation | TokenKind::Backslash
             )
         });
-        let flag = |k: usize| self.arguments[k].kind == Kind::Flag;
-        alone
-            && matches!(meaning(self.text(t), self.arguments.iter().map(|a| a.name)), Meaning::One(k) if flag(k))
+        let flag = |k: usize| {
+            let mut arguments = self.arguments();
+            arguments.nth(k).is_some_and(|a| a.kind == Kind::Flag)
+        };
+        alone && matches!(self.argument_meant(self.text(t)), Meaning::One(k) if flag(k))
     }
 
     pub(super) fn at_end_of_value(&self) -> bool {

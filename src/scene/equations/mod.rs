@@ -205,11 +205,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     /// Pose and velocity of a marker; its accelerations are those of driven coordinates only.
     pub fn marker(&self, m: usize) -> MarkerState<S> {
-        if let Some(state) = self.scratch.markers.borrow()[m] {
+        if let Some(state) = self.scratch.markers.borrow().get(m) {
             return state;
         }
         let state = sweep::marker_state(&self.scene.markers[m], self.links());
-        self.scratch.markers.borrow_mut()[m] = Some(state);
+        self.scratch.markers.borrow_mut().keep(m, state);
         state
     }
 
