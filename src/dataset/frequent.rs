@@ -77,27 +77,24 @@ const END: &str = "END";
 /// Returns whether a byte is a mark or begins a character that may be one: no part of a word that
 /// is frequent.
 fn ends_word(byte: u8) -> bool {
-    matches!(
-        byte,
-        b' ' | b','
-            | b'='
-            | b'('
-            | b')'
-            | b':'
-            | b'/'
-            | b'\n'
-            | b'\\'
-            | b'\r'
-            | b'\t'
-            | b';'
-            | b'!'
-            | b'&'
-            | b'"'
-            | 0x0B
-            | 0x0C
-            | 0x80..
-    )
+    ENDS_WORD[usize::from(byte)]
 }
+
+const ENDS_WORD: [bool; 256] = {
+    const MARKS: &[u8] = b" ,=():/\n\\\r\t;!&\"\x0B\x0C";
+    let mut ends = [false; 256];
+    let mut k = 0;
+    while k < MARKS.len() {
+        ends[MARKS[k] as usize] = true;
+        k += 1;
+    }
+    let mut byte = 0x80;
+    while byte < ends.len() {
+        ends[byte] = true;
+        byte += 1;
+    }
+    ends
+};
 
 /// A text and the place up to which it has been read.
 struct Reader<'t> {

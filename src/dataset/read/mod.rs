@@ -96,7 +96,7 @@ impl<'a> Reader<'a> {
         let mut record = Record {
             row,
             id,
-            given: Vec::with_capacity(self.n_assignments()),
+            given: Vec::with_capacity(self.n_arguments()),
             kept: Vec::new(),
             place: Place {
                 line: self.source.place(head.start).0,
@@ -115,14 +115,16 @@ impl<'a> Reader<'a> {
         Some(record)
     }
 
-    /// Number of arguments that have a value.
-    fn n_assignments(&self) -> usize {
-        let equals = self.tokens.iter();
-        equals.filter(|t| t.kind == TokenKind::Equals).count()
+    /// Number of arguments, at most: words that follow a separator.
+    fn n_arguments(&self) -> usize {
+        let begins = |pair: &&[Token]| {
+            pair[0].kind.separates() && pair[1].kind == TokenKind::Atom && !self.numeric(pair[1])
+        };
+        self.tokens.windows(2).filter(begins).count()
     }
 
     /// The arguments of the row, once it is known.
-    fn arguments(&self) -> impl Iterator<Item = &'static Argument> + use<> {
+    fn arguments(&self) -> impl Iterator<Item = &'static Argument> + Clone + use<> {
         let row = self.row;
         (0..).map_while(move |k| row?.argument(k))
     }
@@ -209,12 +211,8 @@ impl<'a> Reader<'a> {
     /// Goes to the next argument; false at the end.
     fn next_argument(&mut self) -> bool {
         while let Some(t) = self.tokens.get(self.at) {
-            let separator = matches!(
-                t.kind,
-                TokenKind::Comma | TokenKind::Continuation | TokenKind::Backslash
-            );
             // A slash may end an expression; it means nothing else between arguments.
-            if !separator && t.kind != TokenKind::Slash {
+            if !t.kind.separates() && t.kind != TokenKind::Slash {
                 return true;
             }
             self.at += 1;
