@@ -399,3 +399,24 @@ pub(super) fn view_name(comment: &str) -> Option<String> {
     let rest = rest.strip_prefix('=')?.trim_start().strip_prefix('\'')?;
     rest.split_once('\'').map(|(name, _)| name.to_owned())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// A line ends with `\n`, with `\r\n`, or with `\r` alone.
+        #[test]
+        fn lines_begin_behind_every_end(pieces in proptest::collection::vec(0..4_usize, 0..20), only in any::<bool>()) {
+            const PIECES: [&str; 4] = ["ab", "\n", "\r\n", "\r"];
+            let most = if only { 2 } else { 4 };
+            let text: String = pieces.iter().map(|&k| PIECES[k % most]).collect();
+            let source = Source::from_text(None, text.as_str());
+            let bytes = text.as_bytes();
+            let ends = |k: &usize| bytes[*k] == b'\n' || bytes[*k] == b'\r' && bytes.get(*k + 1) != Some(&b'\n');
+            let begins = [0].into_iter().chain((0..bytes.len()).filter(ends).map(|k| k + 1));
+            prop_assert_eq!(source.line_starts, begins.collect::<Vec<_>>());
+        }
+    }
+}

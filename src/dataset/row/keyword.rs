@@ -42,7 +42,8 @@ pub(in crate::dataset) fn meaning_among<'a>(
     };
     // most words are written in full, and no two names of a table share a spelling
     let is_word = |(_, name): &(usize, &str)| name.as_bytes().eq_ignore_ascii_case(word);
-    if let Some((k, _)) = names.clone().find(is_word) {
+    let whole = (!word.contains(&b'|')).then(|| names.clone().find(is_word));
+    if let Some((k, _)) = whole.flatten() {
         return Meaning::One(k);
     }
     let mut begins = Vec::new();

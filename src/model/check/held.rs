@@ -31,7 +31,8 @@ impl Groups {
     fn tie(&mut self, bodies: &[ElementId]) {
         for pair in bodies.windows(2) {
             let (a, b) = (self.of(pair[0]), self.of(pair[1]));
-            self.0.insert(a, b);
+            // ground, of which most groups are, stays the representative
+            self.0.insert(a.max(b), a.min(b));
         }
     }
 }
@@ -45,11 +46,7 @@ fn bodies_of(model: &Model, element: &dyn Element) -> Vec<ElementId> {
 }
 
 /// The same, of what an element names by its numbers, and of the markers in its functions.
-fn bodies_named(
-    model: &Model,
-    references: Vec<Named>,
-    in_functions: Vec<u32>,
-) -> Vec<ElementId> {
+fn bodies_named(model: &Model, references: Vec<Named>, in_functions: Vec<u32>) -> Vec<ElementId> {
     let mut markers = in_functions;
     for (_, target) in references {
         match target.kind {

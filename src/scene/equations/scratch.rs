@@ -51,7 +51,7 @@ impl<T: Copy> Asked<T> {
 /// Results found so far, and questions that are open.
 pub(super) struct Scratch<S> {
     /// links with the accelerations of driven coordinates only   (n_links)
-    pub links: OnceCell<Vec<LinkState<S>>>,
+    pub links: OnceCell<Rc<Vec<LinkState<S>>>>,
     /// poses and velocities of those markers that were asked for
     pub markers: RefCell<Asked<MarkerState<S>>>,
     /// two markers as they move in time: those of the row that was evaluated last, as the rows of
