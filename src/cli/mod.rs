@@ -275,7 +275,7 @@ fn obey(cli: &Cli) -> ExitCode {
         Verb::Plot(args) => plot::run(args),
         Verb::Repl(args) => repl::run(args),
         Verb::Report(args) => report::run(args),
-        Verb::Run(args) => run::run(args),
+        Verb::Run(args) => run::run_last(args),
         Verb::Runs(args) => runs::run(args),
         Verb::Statements(args) => statements::run(args),
         Verb::Sweep(args) => sweep::run(args),

@@ -13,7 +13,7 @@ use crate::analysis::session::{Chosen, Options, Session};
 use crate::analysis::watch::Watch;
 use crate::analysis::work_limit::ProcessClock;
 use crate::dataset::command::{Command, Script, SimulationKind, Step};
-use crate::dataset::{self, Reading};
+use crate::dataset::{self, Dataset, Reading};
 use crate::diagnostic::{Cause, Diagnostic, Error, Severity};
 use crate::model::{ElementKind, Family, Model, SettingsStatement};
 use crate::numeric::Stats;
@@ -119,6 +119,23 @@ impl Watch for Terminal<'_> {
 /// # Errors
 /// When a file has mistakes or cannot be written, or the model cannot work.
 pub fn run(args: &Args) -> Outcome {
+    run_holding(args, &mut None)
+}
+
+/// Does the same as the last thing of a process: what the run holds is left to the system, which
+/// takes it back at once, and not piece by piece.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_last(args: &Args) -> Outcome {
+    let mut held = None;
+    let outcome = run_holding(args, &mut held);
+    std::mem::forget(held);
+    outcome
+}
+
+/// Runs a model; hands over what the run holds in the end.
+fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     let clock = ProcessClock::start();
     interrupt::install_for_run();
     let guard = Guard::set(args.limits.limit, clock);
@@ -164,11 +181,7 @@ pub fn run(args: &Args) -> Outcome {
         tables.complete(&mut session, shown)?
     };
     if args.output.open {
-        let is_page = |file: &&PathBuf| super::moved::has_ending(file, "html");
-        written
-            .iter()
-            .filter(is_page)
-            .for_each(|file| super::animate::open(file));
+        open_pages(&written);
     }
     if args.json {
         say(&record);
@@ -196,14 +209,14 @@ pub fn run(args: &Args) -> Outcome {
     if status != Status::Completed && (args.quiet || args.json) {
         remark(&session.run.record.stop_reason);
     }
-    Ok(leave(status, (session, dataset)))
+    *held = Some((session, dataset));
+    Ok(exit(status))
 }
 
-/// Returns the exit of a run, whose memory ends with the process: to take a model apart is 2 % of a
-/// small one.
-fn leave<T>(status: Status, left: T) -> Exit {
-    std::mem::forget(left);
-    exit(status)
+/// Opens the pages among files that were written.
+fn open_pages(written: &[PathBuf]) {
+    let is_page = |file: &&PathBuf| super::moved::has_ending(file, "html");
+    (written.iter().filter(is_page)).for_each(|file| super::animate::open(file));
 }
 
 /// Reads the model of a run and its commands, with the loads that are asked for.

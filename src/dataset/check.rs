@@ -60,8 +60,7 @@ fn not_finite(model: &Model) -> Vec<Diagnostic> {
     for row in STATEMENTS {
         row.visit_values(model, &mut |id, argument, value| {
             if let Some(x) = not_finite_in(value) {
-                let arguments = row.arguments();
-                let keyword = arguments.get(argument).map(|a| a.keyword());
+                let keyword = row.argument(argument).map(|a| a.keyword());
                 let what = format!("{} is {x}", keyword.unwrap_or_default());
                 let element = element_name(&canonical(row.keyword()), id);
                 found.push(Diagnostic::error("unfit_value", what).element(element));

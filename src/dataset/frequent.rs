@@ -40,7 +40,7 @@ pub(super) fn script(text: &str) -> Option<Syntax> {
 /// Reads comments and statements to the end of the text, or to the statement END where it `ends`
 /// the text.
 fn items(text: &str, mut reader: Reader, mut syntax: Syntax, ends: bool) -> Option<Syntax> {
-    let mut name = None;
+    let (mut name, mut tokens) = (None, Vec::new());
     while let Some(byte) = reader.here() {
         match byte {
             b' ' | b'\t' | b'\n' | b'\r' => {
@@ -58,11 +58,12 @@ fn items(text: &str, mut reader: Reader, mut syntax: Syntax, ends: bool) -> Opti
                 return Some(syntax);
             }
             _ => {
-                let tokens = reader.statement()?;
+                tokens.clear();
+                reader.statement(&mut tokens)?;
                 let (first, last) = (tokens.first()?.span, tokens.last()?.span);
                 syntax.items.push(Item::Statement(Tokens {
                     span: Span::new(first.start, last.end),
-                    tokens,
+                    tokens: tokens.clone(),
                     name: name.take(),
                 }));
             }
@@ -76,27 +77,24 @@ const END: &str = "END";
 /// Returns whether a byte is a mark or begins a character that may be one: no part of a word that
 /// is frequent.
 fn ends_word(byte: u8) -> bool {
-    matches!(
-        byte,
-        b' ' | b','
-            | b'='
-            | b'('
-            | b')'
-            | b':'
-            | b'/'
-            | b'\n'
-            | b'\\'
-            | b'\r'
-            | b'\t'
-            | b';'
-            | b'!'
-            | b'&'
-            | b'"'
-            | 0x0B
-            | 0x0C
-            | 0x80..
-    )
+    ENDS_WORD[usize::from(byte)]
 }
+
+const ENDS_WORD: [bool; 256] = {
+    const MARKS: &[u8] = b" ,=():/\n\\\r\t;!&\"\x0B\x0C";
+    let mut ends = [false; 256];
+    let mut k = 0;
+    while k < MARKS.len() {
+        ends[MARKS[k] as usize] = true;
+        k += 1;
+    }
+    let mut byte = 0x80;
+    while byte < ends.len() {
+        ends[byte] = true;
+        byte += 1;
+    }
+    ends
+};
 
 /// A text and the place up to which it has been read.
 struct Reader<'t> {
@@ -160,16 +158,15 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a statement that begins with a word.
-    fn statement(&mut self) -> Option<Vec<Token>> {
-        let mut tokens = Vec::new();
+    /// Reads a statement that begins with a word; its tokens are put behind none.
+    fn statement(&mut self, tokens: &mut Vec<Token>) -> Option<()> {
         loop {
             self.blanks();
             let start = self.at;
             let kind = match self.here() {
-                None | Some(b'\n' | b'\r' | b'!') => match self.continuation(&mut tokens)? {
+                None | Some(b'\n' | b'\r' | b'!') => match self.continuation(tokens)? {
                     true => continue,
-                    false => return Some(tokens),
+                    false => return Some(()),
                 },
                 Some(b'=') => TokenKind::Equals,
                 Some(b'/') => TokenKind::Slash,

@@ -1,6 +1,6 @@
 //! Statements and arguments that are accepted and change nothing, told once for a file.
 
-use super::row::{Argument, Record, canonical};
+use super::row::{Given, Record, canonical};
 use super::syntax::Source;
 use crate::diagnostic::{Diagnostic, Severity};
 
@@ -11,19 +11,12 @@ pub(super) struct Idle {
     found: Vec<(String, Vec<String>)>,
     /// place of the first
     first: Option<crate::diagnostic::Span>,
-    /// keyword and arguments of the row of the last record
-    row: Option<(&'static str, Vec<Argument>)>,
 }
 
 impl Idle {
     /// Adds whatever of a record changes nothing.
     pub(super) fn add(&mut self, record: &Record) {
-        let row = record.row.keyword();
-        if self.row.as_ref().is_none_or(|(known, _)| *known != row) {
-            self.row = Some((row, record.row.arguments()));
-        }
-        let arguments = self.row.as_ref().map_or(&[][..], |(_, all)| all);
-        let idle = |g: &super::row::Given| arguments.get(g.argument).filter(|a| a.idle);
+        let idle = |g: &Given| record.row.argument(g.argument).filter(|a| a.idle);
         let mut words: Vec<String> = record
             .given
             .iter()

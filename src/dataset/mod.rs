@@ -31,7 +31,7 @@ use crate::disk;
 use crate::model::{ElementKind, MarkerOwner, Model};
 use idle::Idle;
 use read::Table;
-use row::Record;
+use row::{Given, Record};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use syntax::{Item, Source, Syntax};
@@ -216,10 +216,12 @@ fn argument_of(records: &[Option<Record>], d: &Diagnostic) -> Option<Span> {
     let (element, argument) = (d.element.as_ref()?, d.argument?);
     let mut records = records.iter().flatten();
     let record = records.find(|r| r.element() == *element)?;
-    let arguments = record.row.arguments();
-    let given = record.given.iter();
-    let mut spans = given.filter(|g| arguments[g.argument].keyword() == argument);
-    spans.next().map(|g| g.span)
+    let mut given = record.given.iter();
+    let is_meant = |g: &&Given| {
+        let known = record.row.argument(g.argument);
+        known.is_some_and(|a| a.keyword() == argument)
+    };
+    given.find(is_meant).map(|g| g.span)
 }
 
 /// Gives the elements that diagnostics are about the names that stand above their statements.

@@ -1046,6 +1046,43 @@ mod tests {
     use crate::dataset::row::meaning;
 
     #[test]
+    fn no_two_names_of_a_row_share_a_spelling() {
+        let unique = |names: Vec<&str>, of: &str| {
+            let spellings = names.iter().flat_map(|name| name.split('|'));
+            let mut all: Vec<String> = spellings.map(str::to_ascii_uppercase).collect();
+            let n = all.len();
+            all.sort();
+            all.dedup();
+            assert_eq!(all.len(), n, "{of}");
+            for (k, name) in names.iter().enumerate() {
+                for spelling in name.split('|') {
+                    let word = spelling.to_lowercase();
+                    let meant = meaning(&word, names.iter().copied());
+                    assert_eq!(meant, Meaning::One(k), "{of} {word}");
+                }
+                let written = format!("{name}|");
+                assert_eq!(meaning(&written, names.iter().copied()), Meaning::Unknown);
+                if name.contains('|') {
+                    assert_eq!(meaning(name, names.iter().copied()), Meaning::Unknown);
+                }
+            }
+        };
+        unique(
+            STATEMENTS.iter().map(|s| s.keyword()).collect(),
+            "statements",
+        );
+        for row in STATEMENTS {
+            let arguments = row.arguments();
+            unique(arguments.iter().map(|a| a.name).collect(), row.keyword());
+            for argument in arguments {
+                if let Kind::Word(words) | Kind::Words(words) = argument.kind {
+                    unique(words.to_vec(), argument.name);
+                }
+            }
+        }
+    }
+
+    #[test]
     fn a_word_is_found_among_the_names_that_begin_as_it_does_as_among_all() {
         let spellings = STATEMENTS.iter().flat_map(|s| s.keyword().split('|'));
         for spelling in spellings.chain(["NOTHING", "éa", "1/2", "|ab"]) {

@@ -52,6 +52,9 @@ impl Encoding {
             _ if std::str::from_utf8(bytes).is_ok() => Encoding::Utf8,
             _ => Encoding::Latin1,
         };
+        if guess == Encoding::Utf8 {
+            return guess;
+        }
         match guess.decode(bytes) {
             Some(text) if guess.encode(&text) == bytes => guess,
             _ if std::str::from_utf8(bytes).is_ok() => Encoding::Utf8,
@@ -103,8 +106,8 @@ const STRAY: usize = 4;
 pub(super) fn is_no_text(bytes: &[u8]) -> bool {
     let end = bytes.iter().rposition(|&b| b != 0).map_or(0, |k| k + 1);
     let text = bytes.get(..end).unwrap_or_default();
-    let is_control = |b: &&u8| b.is_ascii_control() && !b.is_ascii_whitespace();
-    let control = text.iter().filter(is_control).count();
+    let is_control = |&b: &u8| b.is_ascii_control() & !matches!(b, b'\t' | b'\n' | 0x0C | b'\r');
+    let control: usize = text.iter().map(|b| usize::from(is_control(b))).sum();
     let is_much = control > STRAY && control as f64 > MOST_CONTROL * text.len() as f64;
     is_much && !matches!(Encoding::of(bytes), Encoding::Utf16 { .. })
 }
@@ -115,10 +118,14 @@ impl Source {
         let text = text.into();
         let mut line_starts = vec![0];
         let bytes = text.as_bytes();
-        for (k, &b) in bytes.iter().enumerate() {
-            if b == b'\n' || b == b'\r' && bytes.get(k + 1) != Some(&b'\n') {
-                line_starts.push(k + 1);
+        if text.contains('\r') {
+            for (k, &b) in bytes.iter().enumerate() {
+                if b == b'\n' || b == b'\r' && bytes.get(k + 1) != Some(&b'\n') {
+                    line_starts.push(k + 1);
+                }
             }
+        } else {
+            line_starts.extend(text.match_indices('\n').map(|(k, _)| k + 1));
         }
         Self {
             file: file.map(str::to_owned),
@@ -208,6 +215,13 @@ pub enum TokenKind {
     Comment,
     /// a mark that means nothing where it stands
     Stray,
+}
+
+impl TokenKind {
+    /// Returns whether it stands between arguments.
+    pub(super) fn separates(self) -> bool {
+        matches!(self, Self::Comma | Self::Continuation | Self::Backslash)
+    }
 }
 
 /// A word or mark of a statement.
@@ -384,4 +398,25 @@ pub(super) fn view_name(comment: &str) -> Option<String> {
     let rest = comment.get(at + KEY.len()..)?.trim_start();
     let rest = rest.strip_prefix('=')?.trim_start().strip_prefix('\'')?;
     rest.split_once('\'').map(|(name, _)| name.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// A line ends with `\n`, with `\r\n`, or with `\r` alone.
+        #[test]
+        fn lines_begin_behind_every_end(pieces in proptest::collection::vec(0..4_usize, 0..20), only in any::<bool>()) {
+            const PIECES: [&str; 4] = ["ab", "\n", "\r\n", "\r"];
+            let most = if only { 2 } else { 4 };
+            let text: String = pieces.iter().map(|&k| PIECES[k % most]).collect();
+            let source = Source::from_text(None, text.as_str());
+            let bytes = text.as_bytes();
+            let ends = |k: &usize| bytes[*k] == b'\n' || bytes[*k] == b'\r' && bytes.get(*k + 1) != Some(&b'\n');
+            let begins = [0].into_iter().chain((0..bytes.len()).filter(ends).map(|k| k + 1));
+            prop_assert_eq!(source.line_starts, begins.collect::<Vec<_>>());
+        }
+    }
 }

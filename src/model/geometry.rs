@@ -10,7 +10,7 @@ use crate::space::{Frame, Mat3, Vec3, rotation};
 pub(crate) fn orientation(o: &Orientation, origin: [f64; 3]) -> Result<Mat3<f64>, String> {
     let from = |p: &Option<[f64; 3]>| p.map(|p| Vec3(p) - Vec3(origin));
     let r = match o {
-        Orientation::Aligned => Mat3::identity(),
+        Orientation::Aligned => return Ok(Mat3::identity()),
         Orientation::Euler([psi, theta, phi]) => rotation::from_313(*psi, *theta, *phi),
         Orientation::Points { z, x, use_x } => {
             let fallback = |given: Vec3<f64>, first: usize| {

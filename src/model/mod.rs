@@ -86,8 +86,12 @@ pub struct Break {
 impl Formula {
     /// An expression built by a program.
     pub fn text(text: impl Into<String>) -> Self {
+        Self::unplaced(Text::from(text.into()))
+    }
+
+    fn unplaced(text: Text) -> Self {
         Formula::Expression {
-            text: Text::from(text.into()),
+            text,
             line: 0,
             column: 0,
             breaks: Vec::new(),
@@ -136,7 +140,7 @@ impl Formula {
 
 impl Default for Formula {
     fn default() -> Self {
-        Formula::text("")
+        Formula::unplaced(Text::default())
     }
 }
 

@@ -35,18 +35,21 @@ impl Model {
     /// Returns every reference from one element to another. Numbers that were not given (0) are
     /// left out.
     pub fn references(&self) -> Vec<Reference<'_>> {
-        let mut all = Vec::new();
-        for (element, e) in self.elements() {
+        self.each_reference().collect()
+    }
+
+    /// Goes through the same, one by one.
+    pub(crate) fn each_reference(&self) -> impl Iterator<Item = Reference<'_>> {
+        self.elements().into_iter().flat_map(|(element, e)| {
             let place = e.place();
             let given = e.references().into_iter().filter(|r| r.1.number != 0);
-            all.extend(given.map(|(argument, target)| Reference {
+            given.map(move |(argument, target)| Reference {
                 element,
                 place,
                 argument,
                 target,
-            }));
-        }
-        all
+            })
+        })
     }
 
     /// Returns elements of which a mistake is known, as messages name them, and those that name
@@ -58,7 +61,7 @@ impl Model {
         let named = |r: &Reference<'_>| {
             r.target.kind.family() == Family::Data && mistaken.contains(&r.target.to_string())
         };
-        let all = self.references().into_iter().filter(named);
+        let all = self.each_reference().filter(named);
         let readers: Vec<String> = all.map(|r| r.element.to_string()).collect();
         mistaken.extend(readers);
         mistaken
@@ -82,8 +85,8 @@ impl Model {
     /// Returns the elements that name an element, by a number of theirs or in a function, each
     /// once.
     pub fn named_by(&self, id: ElementId) -> Vec<ElementId> {
-        let by_number = self.references().into_iter();
-        let by_number = by_number.filter(|r| r.target == id).map(|r| r.element);
+        let by_number = self.each_reference().filter(|r| r.target == id);
+        let by_number = by_number.map(|r| r.element);
         let in_functions = self.formulas().into_iter().filter(|owned| {
             let Formula::Expression { text, .. } = owned.formula else {
                 return false;

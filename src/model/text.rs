@@ -9,11 +9,11 @@ use crate::expr::program::Program;
 use crate::expr::{Expr, Profile, parse, walk};
 use std::fmt;
 use std::ops::Deref;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, LazyLock, OnceLock};
 
 /// Text of an expression of the function language, with its syntax tree, which is made when it is
 /// first asked for. A text is compared and written as what it says.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 pub struct Text(Arc<Parsed>);
 
 #[derive(Default)]
@@ -69,6 +69,15 @@ impl Text {
         let checked = self.0.constants.get_or_init(check);
         checked.as_ref().map_err(Clone::clone)?;
         Ok(ast)
+    }
+}
+
+/// The text of all that have none.
+static EMPTY: LazyLock<Text> = LazyLock::new(|| Text::from(String::new()));
+
+impl Default for Text {
+    fn default() -> Self {
+        EMPTY.clone()
     }
 }
 

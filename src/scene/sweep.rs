@@ -61,6 +61,20 @@ pub struct LinkState<S> {
     pub a: Vec3<S>,
 }
 
+impl<S: Scalar> LinkState<S> {
+    /// Ground, which stands still.
+    fn ground() -> Self {
+        Self {
+            X_PL: Frame::identity(),
+            X_GL: Frame::identity(),
+            w: Vec3::zero(),
+            v: Vec3::zero(),
+            alpha: Vec3::zero(),
+            a: Vec3::zero(),
+        }
+    }
+}
+
 /// Values, rates and accelerations of the coordinates   (per coordinate; a ball's value is unused)
 pub struct Coordinates<'a, S> {
     /// positions   (n_q)
@@ -90,21 +104,14 @@ impl<S: Scalar> Coordinates<'_, S> {
 /// Poses, twists and accelerations of all links, carriers first.
 pub fn outward<S: Scalar>(scene: &Scene, at: &Coordinates<'_, S>) -> Vec<LinkState<S>> {
     let mut states: Vec<LinkState<S>> = Vec::with_capacity(scene.links.len());
-    let ground = LinkState {
-        X_PL: Frame::identity(),
-        X_GL: Frame::identity(),
-        w: Vec3::zero(),
-        v: Vec3::zero(),
-        alpha: Vec3::zero(),
-        a: Vec3::zero(),
-    };
     for link in &scene.links {
-        let parent = link.parent.map_or(ground, |p| states[p]);
         let mut X_PL = Frame::constant(link.placement);
         if matches!(link.motion, LinkMotion::Rigid) {
-            states.push(carried_rigidly(&parent, X_PL));
+            let parent = link.parent.map(|p| &states[p]);
+            states.push(carried_rigidly(parent, X_PL));
             continue;
         }
+        let parent = link.parent.map_or_else(LinkState::ground, |p| states[p]);
         let jet = |c: usize| at.of(scene.coordinates[c].source);
         let along = |axis: usize, x: S| {
             let mut e = Vec3::zero();
@@ -165,8 +172,16 @@ pub fn outward<S: Scalar>(scene: &Scene, at: &Coordinates<'_, S>) -> Vec<LinkSta
     states
 }
 
-/// The state of a link that its parent carries at a place for ever.
-fn carried_rigidly<S: Scalar>(parent: &LinkState<S>, X_PL: Frame<S>) -> LinkState<S> {
+/// The state of a link that its parent carries at a place for ever; `None`: that is ground.
+fn carried_rigidly<S: Scalar>(parent: Option<&LinkState<S>>, X_PL: Frame<S>) -> LinkState<S> {
+    let Some(parent) = parent else {
+        let ground = LinkState::ground();
+        return LinkState {
+            X_PL,
+            X_GL: ground.X_GL.compose(&X_PL),
+            ..ground
+        };
+    };
     let (R, p) = (X_PL.rotation, X_PL.position);
     let nothing = Vec3::zero();
     let carried = parent.a + parent.alpha.cross(p) + parent.w.cross(parent.w.cross(p));

@@ -121,7 +121,7 @@ pub fn to_quaternion(r: &Mat3<f64>) -> [f64; 4] {
 pub fn snapped(r: &Mat3<f64>) -> Mat3<f64> {
     Mat3(r.0.map(|row| {
         row.map(|x| {
-            let whole = x.round();
+            let whole = if x.abs() < 0.5 { 0.0_f64 } else { 1.0 }.copysign(x);
             if (x - whole).abs() < 4.0 * f64::EPSILON {
                 whole
             } else {

@@ -349,7 +349,7 @@ impl Columns {
                     last
                 }
             };
-            let by_closure = matches!(set.kind, RequestKind::User(_));
+            let by_closure = matches!(*set.kind, RequestKind::User(_));
             let mut entity = entity_of(set.name.clone(), "Request", set.id);
             let mut requested = Requested::new(number, &set.kind);
             for component in components(model, &set, computed) {

@@ -4,6 +4,7 @@
 
 use super::selection::output_says;
 use crate::model::{ElementId, ElementKind, Formula, Model, RequestKind, Text};
+use std::borrow::Cow;
 
 /// A component of a REQUEST.
 pub(super) struct RequestComponent {
@@ -15,27 +16,27 @@ pub(super) struct RequestComponent {
 }
 
 /// Components of one name, of a REQUEST or of one element of a MREQUEST.
-pub(super) struct RequestSet {
+pub(super) struct RequestSet<'m> {
     /// the REQUEST or MREQUEST
     pub id: ElementId,
     pub name: String,
-    pub kind: RequestKind,
+    pub kind: Cow<'m, RequestKind>,
     /// names of the components, where they are given
-    pub cnames: Vec<String>,
+    pub cnames: &'m [String],
 }
 
 /// Returns the sets of all requests that are switched on.
-pub(super) fn request_sets(model: &Model) -> Vec<RequestSet> {
+pub(super) fn request_sets(model: &Model) -> Vec<RequestSet<'_>> {
     let single = model.active(ElementKind::Request, &model.requests);
-    let mut all: Vec<RequestSet> = single
+    let mut all: Vec<RequestSet<'_>> = single
         .map(|(n, request)| {
             let id = ElementKind::Request.id(n);
             let named = request.results_name.clone();
             RequestSet {
                 id,
                 name: named.unwrap_or_else(|| super::columns::name_of(&request.place, id)),
-                kind: request.kind.clone(),
-                cnames: request.cnames.clone(),
+                kind: Cow::Borrowed(&request.kind),
+                cnames: &request.cnames,
             }
         })
         .collect();
@@ -48,8 +49,8 @@ pub(super) fn request_sets(model: &Model) -> Vec<RequestSet> {
             all.push(RequestSet {
                 id,
                 name: format!("{own}.{name}"),
-                kind,
-                cnames: Vec::new(),
+                kind: Cow::Owned(kind),
+                cnames: &[],
             });
         }
     }
@@ -59,10 +60,10 @@ pub(super) fn request_sets(model: &Model) -> Vec<RequestSet> {
 /// Returns the components of a REQUEST as expressions, or those that a closure computes.
 pub(super) fn components(
     model: &Model,
-    set: &RequestSet,
+    set: &RequestSet<'_>,
     computed: &dyn Fn(u32, &Formula) -> bool,
 ) -> Vec<RequestComponent> {
-    match &set.kind {
+    match &*set.kind {
         RequestKind::Displacement { i, j, rm } => {
             let mut all = measured(1, "MAG", "DM", ["DX", "DY", "DZ"], (*i, *j, *rm));
             let angles = match output_says(model, "YPR") {

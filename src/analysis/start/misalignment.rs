@@ -147,10 +147,14 @@ pub fn turned(
     for (k, part) in scene.parts.iter().enumerate() {
         let now = at.part(k, false).R_GM;
         let drawn = part.initial.rotation;
-        let condition = asked.part(k, false).R_GM * before.part(k, false).R_GM.transpose();
         let from = |then: &Mat3<f64>| branch::angle_between(then, &now);
-        let angle = from(&drawn).min(from(&(condition * drawn)));
-        if angle > TURNED && !part.is_point_mass() {
+        let angle = from(&drawn);
+        if angle <= TURNED || part.is_point_mass() {
+            continue;
+        }
+        let condition = asked.part(k, false).R_GM * before.part(k, false).R_GM.transpose();
+        let angle = angle.min(from(&(condition * drawn)));
+        if angle > TURNED {
             parts.push((part.id, angle));
         }
     }

@@ -49,8 +49,8 @@ impl<T: Default> Statement for CommandRow<T> {
     fn is_idle(&self) -> bool {
         self.prints
     }
-    fn arguments(&self) -> Vec<Argument> {
-        self.bindings.iter().map(|b| b.argument).collect()
+    fn argument(&self, k: usize) -> Option<&'static Argument> {
+        self.bindings.get(k).map(|b| &b.argument)
     }
     fn enter(&self, _: &mut Model, _: &Record, _: bool) -> Vec<Problem> {
         Vec::new()

@@ -64,15 +64,10 @@ impl Reader<'_> {
             return false;
         };
         let word = self.text(t);
-        let is_flag = self.arguments.iter().any(|a| {
+        let is_flag = self.arguments().any(|a| {
             a.kind == Kind::Flag && word.len() > 1 && a.keyword().eq_ignore_ascii_case(word)
         });
-        let alone = self.tokens.get(at + 1).is_none_or(|t| {
-            matches!(
-                t.kind,
-                TokenKind::Comma | TokenKind::Continuation | TokenKind::Backslash
-            )
-        });
+        let alone = (self.tokens.get(at + 1)).is_none_or(|t| t.kind.separates());
         if t.kind == TokenKind::Atom && is_flag && alone {
             let d = Diagnostic::warning(
                 "missing_backslash",

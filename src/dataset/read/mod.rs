@@ -13,6 +13,7 @@ use super::syntax::{Source, Token, TokenKind, Tokens};
 use super::value::{Kind, Number, Value};
 use crate::diagnostic::{Cause, Diagnostic, Severity, Span, near_names};
 use crate::model::{Break, Formula, Place};
+use std::borrow::Cow;
 
 /// A table of statements to read with.
 #[derive(Clone, Copy)]
@@ -31,17 +32,19 @@ pub fn record(
     out: &mut Vec<Diagnostic>,
 ) -> Option<Record> {
     let before = out.len();
-    let silent = |t: &&Token| !matches!(t.kind, TokenKind::Comment | TokenKind::Carry);
+    let is_spoken = |t: &&Token| !matches!(t.kind, TokenKind::Comment | TokenKind::Carry);
+    let spoken = match tokens.tokens.iter().all(|t| is_spoken(&t)) {
+        true => Cow::Borrowed(&tokens.tokens[..]),
+        false => tokens.tokens.iter().filter(is_spoken).copied().collect(),
+    };
     let mut reader = Reader {
         source,
-        tokens: Vec::with_capacity(tokens.tokens.len()),
+        tokens: spoken,
         at: 0,
         row: None,
         id: None,
-        arguments: Vec::new(),
         out,
     };
-    reader.tokens.extend(tokens.tokens.iter().filter(silent));
     let mut record = reader.statement(tokens, table)?;
     record.mistaken = out[before..].iter().any(|d| d.severity == Severity::Error);
     Some(record)
@@ -49,12 +52,12 @@ pub fn record(
 
 struct Reader<'a> {
     source: &'a Source,
-    tokens: Vec<Token>,
+    /// comments left out
+    tokens: Cow<'a, [Token]>,
     at: usize,
     /// the row, once it is known, and then the number
     row: Option<&'static dyn Statement>,
     id: Option<u32>,
-    arguments: Vec<Argument>,
     out: &'a mut Vec<Diagnostic>,
 }
 
@@ -90,11 +93,10 @@ impl<'a> Reader<'a> {
         let id = self.identifier(row, head, slash)?;
         self.id = id;
         let head = Span::new(head.span.start, self.tokens[self.at - 1].span.end);
-        self.arguments = row.arguments();
         let mut record = Record {
             row,
             id,
-            given: Vec::new(),
+            given: Vec::with_capacity(self.n_arguments()),
             kept: Vec::new(),
             place: Place {
                 line: self.source.place(head.start).0,
@@ -111,6 +113,31 @@ impl<'a> Reader<'a> {
         }
         self.exclusions(&record);
         Some(record)
+    }
+
+    /// Number of arguments, at most: words that follow a separator.
+    fn n_arguments(&self) -> usize {
+        let begins = |pair: &&[Token]| {
+            pair[0].kind.separates() && pair[1].kind == TokenKind::Atom && !self.numeric(pair[1])
+        };
+        self.tokens.windows(2).filter(begins).count()
+    }
+
+    /// The arguments of the row, once it is known.
+    fn arguments(&self) -> impl Iterator<Item = &'static Argument> + Clone + use<> {
+        let row = self.row;
+        (0..).map_while(move |k| row?.argument(k))
+    }
+
+    /// Which argument a word means.
+    fn argument_meant(&self, word: &str) -> Meaning {
+        meaning(word, self.arguments().map(|a| a.name))
+    }
+
+    /// An argument of a record.
+    fn argument_of(record: &Record, k: usize) -> &'static Argument {
+        let argument = record.row.argument(k);
+        argument.unwrap_or_else(|| unreachable!("the place was found among the arguments"))
     }
 
     /// Says which statement a finding is about, once its row is known.
@@ -184,12 +211,8 @@ impl<'a> Reader<'a> {
     /// Goes to the next argument; false at the end.
     fn next_argument(&mut self) -> bool {
         while let Some(t) = self.tokens.get(self.at) {
-            let separator = matches!(
-                t.kind,
-                TokenKind::Comma | TokenKind::Continuation | TokenKind::Backslash
-            );
             // A slash may end an expression; it means nothing else between arguments.
-            if !separator && t.kind != TokenKind::Slash {
+            if !t.kind.separates() && t.kind != TokenKind::Slash {
                 return true;
             }
             self.at += 1;
@@ -215,10 +238,11 @@ impl<'a> Reader<'a> {
         let equals = self.take(TokenKind::Equals).is_some();
         // The value may begin on the next line, whose comma then only continues.
         while equals && self.take(TokenKind::Continuation).is_some() {}
-        let argument = match meaning(word, self.arguments.iter().map(|a| a.name)) {
+        let argument = match self.argument_meant(word) {
             Meaning::One(k) => k,
             Meaning::Several(of) => {
-                let names: Vec<String> = of.iter().map(|&k| self.arguments[k].keyword()).collect();
+                let keyword = |&k: &usize| Self::argument_of(record, k).keyword();
+                let names: Vec<String> = of.iter().map(keyword).collect();
                 let message = format!("{word} may be {}", names.join(" or "));
                 return self.fail("ambiguous_argument", name.span, message);
             }
@@ -233,22 +257,16 @@ impl<'a> Reader<'a> {
             }
             Meaning::Unknown => return self.unknown_argument(name),
         };
-        let Argument { kind, repeated, .. } = self.arguments[argument];
+        let meant = Self::argument_of(record, argument);
+        let kind = meant.kind;
         let value = match (kind, equals) {
             (Kind::Flag, false) => Value::Flag,
             (Kind::Flag, true) => {
-                let message = format!(
-                    "{} stands alone, without a value",
-                    self.arguments[argument].keyword()
-                );
+                let message = format!("{} stands alone, without a value", meant.keyword());
                 return self.fail("unexpected_value", name.span, message);
             }
             (_, false) => {
-                let message = format!(
-                    "{} needs a value: {}",
-                    self.arguments[argument].keyword(),
-                    kind.describe()
-                );
+                let message = format!("{} needs a value: {}", meant.keyword(), kind.describe());
                 return self.fail(Cause::MissingValue.code(), name.span, message);
             }
             (_, true) => self.value(kind, name)?,
@@ -259,8 +277,8 @@ impl<'a> Reader<'a> {
             value,
             span,
         };
-        if !repeated && record.given.iter().any(|g| g.argument == argument) {
-            let message = format!("{} is given twice", self.arguments[argument].keyword());
+        if !meant.repeated && record.given.iter().any(|g| g.argument == argument) {
+            let message = format!("{} is given twice", meant.keyword());
             self.error("given_twice", name.span, message);
         } else {
             record.given.push(given);
@@ -270,7 +288,7 @@ impl<'a> Reader<'a> {
 
     fn unknown_argument(&mut self, name: Token) -> Result<(), Reported> {
         let word = self.text(name);
-        let known: Vec<String> = self.arguments.iter().map(Argument::keyword).collect();
+        let known: Vec<String> = self.arguments().map(Argument::keyword).collect();
         let near = near_names(word, known.iter().map(String::as_str));
         let keyword = self.row.map(|row| canonical(row.keyword()));
         let keyword = keyword.unwrap_or_default();
@@ -293,13 +311,14 @@ impl<'a> Reader<'a> {
 
     /// Bare keywords of which only one may be given.
     fn exclusions(&mut self, record: &Record) {
+        let argument = |g: &Given| Self::argument_of(record, g.argument);
         for (k, g) in record.given.iter().enumerate() {
-            let group = self.arguments[g.argument].group;
-            let rival = record.given[..k]
-                .iter()
-                .find(|r| self.arguments[r.argument].group == group);
-            if let (Some(group), Some(rival)) = (group, rival) {
-                let [first, second] = [rival, g].map(|x| self.arguments[x.argument].keyword());
+            let Some(group) = argument(g).group else {
+                continue;
+            };
+            let mut before = record.given[..k].iter();
+            if let Some(rival) = before.find(|r| argument(r).group == Some(group)) {
+                let [first, second] = [rival, g].map(|x| argument(x).keyword());
                 let message = format!("{first} and {second} are both given as the {group}");
                 self.error("excluded_argument", g.span, message);
             }

@@ -95,12 +95,7 @@ impl<'a> Reader<'a> {
 
     /// The first token from here on that is neither comma nor backslash.
     pub(super) fn after_separators(&self, from: usize) -> usize {
-        let is = |t: &Token| {
-            matches!(
-                t.kind,
-                TokenKind::Comma | TokenKind::Continuation | TokenKind::Backslash
-            )
-        };
+        let is = |t: &Token| t.kind.separates();
         from + self.tokens[from.min(self.tokens.len())..]
             .iter()
             .take_while(|t| is(t))
@@ -129,15 +124,12 @@ impl<'a> Reader<'a> {
         if t.kind != TokenKind::Atom || self.numeric(t) {
             return false;
         }
-        let alone = self.tokens.get(at + 1).is_none_or(|t| {
-            matches!(
-                t.kind,
-                TokenKind::Comma | TokenKind::Continuation | TokenKind::Backslash
-            )
-        });
-        let flag = |k: usize| self.arguments[k].kind == Kind::Flag;
-        alone
-            && matches!(meaning(self.text(t), self.arguments.iter().map(|a| a.name)), Meaning::One(k) if flag(k))
+        let alone = (self.tokens.get(at + 1)).is_none_or(|t| t.kind.separates());
+        let flag = |k: usize| {
+            let mut arguments = self.arguments();
+            arguments.nth(k).is_some_and(|a| a.kind == Kind::Flag)
+        };
+        alone && matches!(self.argument_meant(self.text(t)), Meaning::One(k) if flag(k))
     }
 
     pub(super) fn at_end_of_value(&self) -> bool {

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::diagnostic::Cause;
-use std::borrow::Cow;
 
 impl Reader<'_> {
     pub(super) fn value(&mut self, kind: Kind, name: Token) -> Result<Value, Reported> {

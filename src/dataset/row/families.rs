@@ -98,8 +98,8 @@ impl<T: Element> Statement for Numbered<T> {
     fn open(&self) -> bool {
         false
     }
-    fn arguments(&self) -> Vec<Argument> {
-        self.bindings.iter().map(|b| b.argument).collect()
+    fn argument(&self, k: usize) -> Option<&'static Argument> {
+        self.bindings.get(k).map(|b| &b.argument)
     }
 
     fn enter(&self, model: &mut Model, record: &Record, change: bool) -> Vec<Problem> {
@@ -205,8 +205,8 @@ impl<T: Element> Statement for Single<T> {
     fn open(&self) -> bool {
         self.settings.is_some()
     }
-    fn arguments(&self) -> Vec<Argument> {
-        self.bindings.iter().map(|b| b.argument).collect()
+    fn argument(&self, k: usize) -> Option<&'static Argument> {
+        self.bindings.get(k).map(|b| &b.argument)
     }
 
     fn enter(&self, model: &mut Model, record: &Record, _: bool) -> Vec<Problem> {
@@ -275,8 +275,8 @@ impl Statement for Opaque {
     fn is_idle(&self) -> bool {
         !self.kind.is_unsolved()
     }
-    fn arguments(&self) -> Vec<Argument> {
-        Vec::new()
+    fn argument(&self, _: usize) -> Option<&'static Argument> {
+        None
     }
 
     fn enter(&self, model: &mut Model, record: &Record, change: bool) -> Vec<Problem> {
@@ -370,13 +370,10 @@ fn incomplete<T>(bindings: &'static [Binding<T>], record: &Record) -> Vec<Proble
             )),
             Some(group) if b.argument.required && !groups_seen.contains(&group) => {
                 groups_seen.push(group);
-                let members = bindings.iter().enumerate();
-                let members: Vec<_> = members
-                    .filter(|(_, m)| m.argument.group == Some(group))
-                    .collect();
-                if !members.iter().any(|(m, _)| has(*m)) {
-                    let words: Vec<String> =
-                        members.iter().map(|(_, m)| m.argument.keyword()).collect();
+                let all = bindings.iter().enumerate();
+                let members = all.filter(|(_, m)| m.argument.group == Some(group));
+                if !members.clone().any(|(m, _)| has(m)) {
+                    let words: Vec<String> = members.map(|(_, m)| m.argument.keyword()).collect();
                     problems.push(Problem::new(
                         "missing_argument",
                         format!("does not say its {group}: one of {}", words.join(", ")),

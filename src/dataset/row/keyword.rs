@@ -27,19 +27,25 @@ pub enum Meaning {
 
 /// Which of the names a word means: itself, else the only one it begins, else the first whose
 /// shortest form it has.
-pub fn meaning<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Meaning {
+pub fn meaning<'a>(word: &str, names: impl Iterator<Item = &'a str> + Clone) -> Meaning {
     meaning_among(word, names.enumerate())
 }
 
 /// As [`meaning`], of some of the names with their places.
 pub(in crate::dataset) fn meaning_among<'a>(
     word: &str,
-    names: impl Iterator<Item = (usize, &'a str)>,
+    names: impl Iterator<Item = (usize, &'a str)> + Clone,
 ) -> Meaning {
     let word = word.as_bytes();
     let Some(first) = word.first() else {
         return Meaning::Unknown;
     };
+    // most words are written in full, and no two names of a table share a spelling
+    let is_word = |(_, name): &(usize, &str)| name.as_bytes().eq_ignore_ascii_case(word);
+    let whole = (!word.contains(&b'|')).then(|| names.clone().find(is_word));
+    if let Some((k, _)) = whole.flatten() {
+        return Meaning::One(k);
+    }
     let mut begins = Vec::new();
     let mut wins = None;
     for (k, name) in names {

@@ -191,8 +191,12 @@ pub trait Statement: Sync {
     }
     /// Returns true if arguments that no row describes are kept rather than refused.
     fn open(&self) -> bool;
+    /// One of its arguments; `None` beyond the last.
+    fn argument(&self, k: usize) -> Option<&'static Argument>;
     /// Its arguments.
-    fn arguments(&self) -> Vec<Argument>;
+    fn arguments(&self) -> Vec<Argument> {
+        (0..).map_while(|k| self.argument(k).copied()).collect()
+    }
     /// Puts a record into the model: a new element, or (`change`) new values for arguments of one
     /// that is there.
     fn enter(&self, model: &mut Model, record: &Record, change: bool) -> Vec<Problem>;

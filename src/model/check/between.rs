@@ -23,7 +23,7 @@ fn is_force(measure: Measure) -> bool {
 impl<'m> Acting<'m> {
     fn new(model: &'m Model) -> Self {
         let mut at: BTreeMap<u32, Vec<ElementId>> = BTreeMap::new();
-        for r in model.references() {
+        for r in model.each_reference() {
             // RM, IRM and JRM lend their axes only
             let acts = matches!(r.element.kind.family(), Family::Force | Family::Constraint)
                 && !r.argument.ends_with("RM");

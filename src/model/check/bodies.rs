@@ -179,11 +179,7 @@ pub(super) fn axes_have_directions(model: &Model, out: &mut Out) {
 pub(super) fn floating_markers_have_one_owner(model: &Model, out: &mut Out) {
     const OWNING: &[&str] = &["JFLOAT", "IFLOAT"];
     let mut owners: BTreeMap<u32, ElementId> = BTreeMap::new();
-    for r in model
-        .references()
-        .iter()
-        .filter(|r| OWNING.contains(&r.argument))
-    {
+    for r in (model.each_reference()).filter(|r| OWNING.contains(&r.argument)) {
         let Some(marker) = model.markers.get(&r.target.number) else {
             continue;
         };

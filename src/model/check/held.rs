@@ -4,6 +4,7 @@
 use super::*;
 use crate::model::geometry::marker_frame;
 use crate::space::{Frame, Vec3};
+use std::cell::LazyCell;
 use std::collections::BTreeSet;
 
 /// Distance of markers on each other, at most, relative to that of the farthest marker from the
@@ -30,7 +31,8 @@ impl Groups {
     fn tie(&mut self, bodies: &[ElementId]) {
         for pair in bodies.windows(2) {
             let (a, b) = (self.of(pair[0]), self.of(pair[1]));
-            self.0.insert(a, b);
+            // ground, of which most groups are, stays the representative
+            self.0.insert(a.max(b), a.min(b));
         }
     }
 }
@@ -38,8 +40,15 @@ impl Groups {
 /// The bodies between which an element acts: those of all the markers that it names, directly, by
 /// joints and shapes, or in its functions.
 fn bodies_of(model: &Model, element: &dyn Element) -> Vec<ElementId> {
-    let mut markers = Vec::new();
-    for (_, target) in element.references() {
+    let formulas = element.formulas().into_iter();
+    let in_functions = formulas.flat_map(|f| markers_in(f.1)).collect();
+    bodies_named(model, element.references(), in_functions)
+}
+
+/// The same, of what an element names by its numbers, and of the markers in its functions.
+fn bodies_named(model: &Model, references: Vec<Named>, in_functions: Vec<u32>) -> Vec<ElementId> {
+    let mut markers = in_functions;
+    for (_, target) in references {
         match target.kind {
             ElementKind::Marker => markers.push(target.number),
             _ => {
@@ -50,9 +59,6 @@ fn bodies_of(model: &Model, element: &dyn Element) -> Vec<ElementId> {
                 );
             }
         }
-    }
-    for (_, formula) in element.formulas() {
-        markers.extend(markers_in(formula));
     }
     let mut bodies: Vec<ElementId> = markers
         .into_iter()
@@ -191,7 +197,7 @@ pub(super) fn joints_are_not_forgotten(model: &Model, out: &mut Out) {
     }
     let uses = Uses::of(model);
     // a model that leaves many markers unused leaves them on each other
-    let unnamed = model.markers.keys().filter(|m| !uses.named.contains(m));
+    let unnamed = model.markers.keys().filter(|m| !contains(&uses.named, m));
     if unnamed.count() > MOST_UNNAMED.max(model.markers.len() / 10) {
         return;
     }
@@ -296,49 +302,56 @@ impl<'a> Sorted<'a> {
     }
 }
 
+/// Returns whether one of ascending values is this.
+fn contains<T: Ord>(ascending: &[T], value: &T) -> bool {
+    ascending.binary_search(value).is_ok()
+}
+
 /// The markers and bodies that elements other than outputs use.
 struct Uses {
-    /// markers that anything names
-    named: BTreeSet<u32>,
-    /// markers that constraints or forces name as their ends
-    ends: BTreeSet<u32>,
-    /// places in ground of those that constraints name
-    joints: Vec<Vec3<f64>>,
-    /// pairs of bodies between which something acts
-    tied: BTreeSet<[ElementId; 2]>,
+    /// markers that anything names, ascending
+    named: Vec<u32>,
+    /// markers that constraints or forces name as their ends, ascending
+    ends: Vec<u32>,
+    /// markers that constraints name
+    joints: Vec<u32>,
+    /// pairs of bodies between which something acts, ascending
+    tied: Vec<[ElementId; 2]>,
 }
 
 impl Uses {
     fn of(model: &Model) -> Self {
-        let (mut named, mut ends) = (BTreeSet::new(), BTreeSet::new());
-        let mut joints = Vec::new();
-        let mut tied = BTreeSet::new();
+        let (mut named, mut ends, mut joints) = (Vec::new(), Vec::new(), Vec::new());
+        let mut tied = Vec::new();
         for (id, element) in model.elements() {
             if id.kind.family() == Family::Output && id.kind != ElementKind::Graphics {
                 continue;
             }
-            let own = element.references().into_iter().map(|r| r.1);
+            let references = element.references();
+            let own = references.iter().map(|r| r.1);
             let own = own.filter(|t| t.kind == ElementKind::Marker);
-            let mut own: Vec<u32> = own.map(|t| t.number).collect();
-            own.extend(element.formulas().iter().flat_map(|f| markers_in(f.1)));
-            let acts = matches!(id.kind.family(), Family::Constraint | Family::Force);
-            if acts {
-                ends.extend(&own);
-            }
+            let first = named.len();
+            named.extend(own.map(|t| t.number));
+            let formulas = element.formulas();
+            let in_functions: Vec<u32> = formulas.iter().flat_map(|f| markers_in(f.1)).collect();
+            named.extend(&in_functions);
             if id.kind.family() == Family::Constraint {
-                let places = own
-                    .iter()
-                    .filter_map(|&m| Some(marker_frame(model, m)?.position));
-                joints.extend(places);
+                joints.extend(&named[first..]);
             }
-            if acts {
-                let bodies = bodies_of(model, element);
+            if matches!(id.kind.family(), Family::Constraint | Family::Force) {
+                ends.extend(&named[first..]);
+                let bodies = bodies_named(model, references, in_functions);
                 for (k, &a) in bodies.iter().enumerate() {
                     tied.extend(bodies[k + 1..].iter().map(|&b| [a, b]));
                 }
             }
-            named.extend(own);
         }
+        for markers in [&mut named, &mut ends] {
+            markers.sort_unstable();
+            markers.dedup();
+        }
+        tied.sort_unstable();
+        tied.dedup();
         Self {
             named,
             ends,
@@ -352,7 +365,7 @@ impl Uses {
     /// second. Two at most: more are no single joint that was forgotten. `chosen`: by whether
     /// nothing at all names the first and the second of a pair.
     fn pairs(&self, model: &Model, chosen: impl Fn(bool, bool) -> bool) -> Vec<(u32, u32)> {
-        let idle = model.markers.keys().filter(|m| !self.ends.contains(m));
+        let idle = model.markers.keys().filter(|m| !contains(&self.ends, m));
         let idle: Vec<Idle> = idle
             .filter_map(|&m| Some((m, model.body_of(m)?, marker_frame(model, m)?)))
             .collect();
@@ -363,7 +376,9 @@ impl Uses {
             return Vec::new();
         }
         let near = TOUCHING * far;
-        let joints = Sorted::of(&self.joints);
+        let place = |&m: &u32| Some(marker_frame(model, m)?.position);
+        let places = LazyCell::new(|| -> Vec<_> { self.joints.iter().filter_map(place).collect() });
+        let joints = LazyCell::new(|| Sorted::of(&places));
         let moves = |id: ElementId| model.body(id).is_some_and(|b| !b.ground);
         let mut neighbours: BTreeMap<ElementId, usize> = BTreeMap::new();
         for body in self.tied.iter().flatten() {
@@ -373,7 +388,7 @@ impl Uses {
         let joined = |id: ElementId| !moves(id) || neighbours(id) > 0;
         // what is tied to several others has its place; markers there may be for measuring
         let hangs = |id: ElementId| moves(id) && neighbours(id) == 1;
-        let unnamed = |m: u32| !self.named.contains(&m);
+        let unnamed = |m: u32| !contains(&self.named, &m);
         let is_one = |a: &Idle, b: &Idle| {
             let mut bodies = [a.1, b.1];
             bodies.sort();
@@ -381,7 +396,7 @@ impl Uses {
                 && chosen(unnamed(a.0), unnamed(b.0))
                 && bodies.iter().all(|&b| joined(b))
                 && bodies.iter().any(|&b| hangs(b))
-                && !self.tied.contains(&bodies)
+                && !contains(&self.tied, &bodies)
                 && joints.near(a.2.position, near).next().is_none()
         };
         let mut found = Vec::new();

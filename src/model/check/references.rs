@@ -10,7 +10,7 @@ use crate::model::{ElementId, ElementKind, Formula, Model};
 use std::collections::BTreeMap;
 
 pub(super) fn references_exist(model: &Model, out: &mut Out) {
-    for r in model.references() {
+    for r in model.each_reference() {
         if model.has(r.target) {
             continue;
         }

@@ -44,6 +44,7 @@ use crate::scene::asker::Asker;
 use crate::space::MarkerState;
 use scratch::Scratch;
 use std::ops::Range;
+use std::rc::Rc;
 
 /// Value of MODE in a kinematic analysis.
 pub const KINEMATIC: f64 = 1.0;
@@ -128,7 +129,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     /// Where every link is and how it moves, with the accelerations of driven coordinates only.
     pub fn links(&self) -> &[sweep::LinkState<S>] {
-        let links = || sweep::outward(self.scene, &self.coordinates(&[]));
+        let links = || Rc::new(sweep::outward(self.scene, &self.coordinates(&[])));
         self.scratch.links.get_or_init(links)
     }
 
@@ -205,11 +206,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     /// Pose and velocity of a marker; its accelerations are those of driven coordinates only.
     pub fn marker(&self, m: usize) -> MarkerState<S> {
-        if let Some(state) = self.scratch.markers.borrow()[m] {
+        if let Some(state) = self.scratch.markers.borrow().get(m) {
             return state;
         }
         let state = sweep::marker_state(&self.scene.markers[m], self.links());
-        self.scratch.markers.borrow_mut()[m] = Some(state);
+        self.scratch.markers.borrow_mut().keep(m, state);
         state
     }
 

@@ -14,12 +14,46 @@ use std::rc::Rc;
 /// Two markers, and their frames as they move in time.
 pub(super) type InTime<S> = ([usize; 2], [Frame<Jet<S>>; 2]);
 
+/// Values of some of many things: room is taken by those that were asked for, as most of a large
+/// scene may be asked for by nobody.
+#[derive(Clone)]
+pub(super) struct Asked<T> {
+    /// where a value stands among these, counted from one; 0: it was not asked for
+    place: Vec<u32>,
+    values: Vec<T>,
+}
+
+/// Number of values for which there is room from the beginning.
+const ROOM: usize = 16;
+
+impl<T: Copy> Asked<T> {
+    /// Creates the values of things of which none was asked for.
+    fn none(n: usize) -> Self {
+        Self {
+            place: vec![0; n],
+            values: Vec::with_capacity(n.min(ROOM)),
+        }
+    }
+
+    /// Returns a value, where it was asked for before.
+    pub fn get(&self, k: usize) -> Option<T> {
+        let place = (self.place[k] as usize).checked_sub(1)?;
+        Some(self.values[place])
+    }
+
+    /// Keeps a value that was not asked for before.
+    pub fn keep(&mut self, k: usize, value: T) {
+        self.values.push(value);
+        self.place[k] = self.values.len() as u32;
+    }
+}
+
 /// Results found so far, and questions that are open.
 pub(super) struct Scratch<S> {
     /// links with the accelerations of driven coordinates only   (n_links)
-    pub links: OnceCell<Vec<LinkState<S>>>,
-    /// poses and velocities of markers   (n_markers)
-    pub markers: RefCell<Vec<Option<MarkerState<S>>>>,
+    pub links: OnceCell<Rc<Vec<LinkState<S>>>>,
+    /// poses and velocities of those markers that were asked for
+    pub markers: RefCell<Asked<MarkerState<S>>>,
     /// two markers as they move in time: those of the row that was evaluated last, as the rows of
     /// a joint are of the same two
     pub in_time: RefCell<Option<InTime<S>>>,
@@ -54,7 +88,7 @@ impl<S: Copy> Scratch<S> {
     pub fn new(scene: &Scene) -> Self {
         Self {
             links: OnceCell::new(),
-            markers: RefCell::new(vec![None; scene.markers.len()]),
+            markers: RefCell::new(Asked::none(scene.markers.len())),
             in_time: RefCell::default(),
             formulas: RefCell::new(vec![None; scene.formulas.len()]),
             rows: RefCell::new(vec![None; scene.rows.len()]),
