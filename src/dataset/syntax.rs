@@ -408,13 +408,17 @@ mod tests {
     proptest! {
         /// A line ends with `\n`, with `\r\n`, or with `\r` alone.
         #[test]
-        fn lines_begin_behind_every_end(pieces in proptest::collection::vec(0..4_usize, 0..20), only in any::<bool>()) {
+        fn lines_begin_behind_every_end(
+            pieces in proptest::collection::vec(0..4_usize, 0..20),
+            only in any::<bool>(),
+        ) {
             const PIECES: [&str; 4] = ["ab", "\n", "\r\n", "\r"];
             let most = if only { 2 } else { 4 };
             let text: String = pieces.iter().map(|&k| PIECES[k % most]).collect();
             let source = Source::from_text(None, text.as_str());
             let bytes = text.as_bytes();
-            let ends = |k: &usize| bytes[*k] == b'\n' || bytes[*k] == b'\r' && bytes.get(*k + 1) != Some(&b'\n');
+            let is_alone = |k: usize| bytes.get(k + 1) != Some(&b'\n');
+            let ends = |k: &usize| bytes[*k] == b'\n' || bytes[*k] == b'\r' && is_alone(*k);
             let begins = [0].into_iter().chain((0..bytes.len()).filter(ends).map(|k| k + 1));
             prop_assert_eq!(source.line_starts, begins.collect::<Vec<_>>());
         }

@@ -195,7 +195,8 @@ fn each_acceleration_motion_goes_on_with_its_own_velocity() {
     }
 }
 
-/// Methods of one step leave their step, RADAU5 its Jacobian too, to a simulation that goes on; several states between are as good as none.
+/// Methods of one step leave their step, RADAU5 its Jacobian too, to a simulation that goes on;
+/// several states between are as good as none.
 #[test]
 fn what_a_method_leaves_is_saved_with_the_state() {
     let model = "what a method leaves\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=2, CM=20, IP=0.1,0.1,0.1\nMARKER/20, PART=2, QP=1,0,0\n\
