@@ -153,6 +153,8 @@ impl Bdf {
     pub fn new(n: usize, options: &Options) -> Self {
         let zeros = || vec![0.0; n];
         let weights = Weights::new(n, options);
+        let permitted = Permitted::new(inner_tolerance(weights.tolerance()), LEAST_TOLERANCE);
+        let weights = weights.for_steps(permitted.now());
         let past = Past {
             t: 0.0,
             h_used: 0.0,
@@ -169,7 +171,7 @@ impl Bdf {
         };
         Bdf {
             options: options.clone(),
-            permitted: Permitted::new(inner_tolerance(weights.tolerance()), LEAST_TOLERANCE),
+            permitted,
             weights,
             stats: Stats::default(),
             max_order: options.max_order.clamp(1, MAX_ORDER),
@@ -540,7 +542,8 @@ impl<P: Dae + ?Sized> Method<P> for Bdf {
                         self.past.h = self.past.h.max(proposed);
                     }
                     self.weights.see(t1, &self.next.y);
-                    self.stats.below_rounding += usize::from(self.permitted.accepted());
+                    let in_vain = self.permitted.accepted() | self.weights.is_raised();
+                    self.stats.below_rounding += usize::from(in_vain);
                     (self.t0, self.can_undo) = (t0, true);
                     return Ok(attempts.accepted(h, t1, order, &mut self.stats));
                 }

@@ -11,7 +11,8 @@
 //! with the requested tolerance E, φ of [`Options::floor`], and j over the unknowns of the same
 //! group as i ([`Relation`]). A coordinate that is large only because of where the origin is
 //! ([`Relation::from_beginning`]) counts as |yᵢ − yᵢ(0)|, so that moving a whole model changes
-//! nothing, and as 50 roundings of it over E at least: no request is finer than its digits.
+//! nothing, and as 50 roundings of it over E at least, or over what a method permits in a step:
+//! no request is finer than its digits.
 //!
 //! Results are judged column by column against the largest value of the column, so the largest
 //! magnitude so far is the right measure: an oscillation through zero costs nothing there. A
@@ -33,6 +34,8 @@ pub struct Weights {
     tolerance: f64,
     /// whether a smaller one was asked for
     raised: bool,
+    /// relative error that is permitted in a step
+    of_step: f64,
     /// φ
     floor: f64,
     /// typical magnitudes that the problem gave   (n)
@@ -146,6 +149,7 @@ impl Weights {
         Weights {
             tolerance,
             raised: options.tolerance < SMALLEST_TOLERANCE,
+            of_step: tolerance,
             floor: options.floor,
             typical: vec![1.0; n],
             magnitude: vec![options.floor; n],
@@ -158,6 +162,11 @@ impl Weights {
             courses: vec![Course::default(); n],
             seen: f64::INFINITY,
         }
+    }
+
+    /// The same for a method that permits a relative error in a step that is not the requested one.
+    pub fn for_steps(self, of_step: f64) -> Self {
+        Self { of_step, ..self }
     }
 
     /// Asks the problem, through `fill`, how magnitudes of unknowns depend on each other.
@@ -198,7 +207,7 @@ impl Weights {
         let dt = (t - self.seen).max(0.0);
         self.seen = t;
         self.coarse = false;
-        let least = ROUNDINGS * f64::EPSILON / self.tolerance;
+        let least = ROUNDINGS * f64::EPSILON / self.of_step;
         let all = self.magnitude.iter_mut().zip(y).zip(&mut self.courses);
         let places = self.typical.iter().zip(&self.origin);
         for (((m, y), course), (typical, origin)) in all.zip(places) {

@@ -19,7 +19,8 @@
 //!
 //! Unknowns whose error is not controlled are judged loosely, multipliers of higher index not at
 //! all: they are linear in the rest of the iteration and carry rounding errors of order 1/h², which
-//! no iteration removes.
+//! no iteration removes. Corrections of the size of rounding that fall no more with a fresh matrix
+//! end the iteration as well: they go to and fro between neighbouring numbers for ever.
 //!
 //! Source: Brenan, Campbell & Petzold, Numerical Solution of Initial-Value Problems in DAEs, 5.2.2;
 //! Petzold & Lötstedt 1986 for (3).
@@ -306,7 +307,7 @@ impl Corrector {
         } else {
             2.0 / (1.0 + cj / self.cj)
         };
-        let (mut first, mut worst_row, mut stagnant) = (0.0, 0, None);
+        let (mut first, mut before, mut worst_row, mut stagnant) = (0.0, f64::INFINITY, 0, None);
         for iteration in 0..self.allowed {
             // residual and correction
             stats.evaluations += 1;
@@ -345,12 +346,21 @@ impl Corrector {
                     stagnant = Some(size);
                     break;
                 }
+                // corrections of the size of rounding that fall no more are all that it leaves
+                if size <= at.rounding && size > SLOWEST_RATE * before {
+                    if fresh {
+                        return Ok(());
+                    }
+                    stagnant = Some(size);
+                    break;
+                }
                 factor = rate / (1.0 - rate);
                 (self.rate_factor, self.measured) = (factor, first);
             }
             if factor * size <= PERMITTED_REST && (fresh || iteration > 0 && is_explained) {
                 return Ok(());
             }
+            before = size;
         }
         Err(Trouble {
             stagnant,

@@ -133,6 +133,8 @@ impl Hht {
         let kappa = 0.5 * ((1.0 - alpha_f) - (1.0 - alpha_m) * (d + 1.0).powi(2) - alpha_m * d * d);
         let c = 0.5 * ((1.0 - gamma) * d * d + gamma * (d + 1.0).powi(2)) + kappa - 1.0 / 6.0;
         let weights = Weights::new(n, options);
+        let permitted = Permitted::new(inner_tolerance(weights.tolerance()), LEAST_TOLERANCE);
+        let weights = weights.for_steps(permitted.now());
         let now = State {
             t: 0.0,
             h_used: 0.0,
@@ -144,7 +146,7 @@ impl Hht {
         };
         Hht {
             options: options.clone(),
-            permitted: Permitted::new(inner_tolerance(weights.tolerance()), LEAST_TOLERANCE),
+            permitted,
             weights,
             control: Pi::new(3.0, 0.0, 0.9, 0.2, 4.0),
             stats: Stats::default(),
@@ -344,7 +346,8 @@ impl<P: Dae + ?Sized> Method<P> for Hht {
                         grown
                     };
                     self.weights.see(t1, &self.next.y);
-                    self.stats.below_rounding += usize::from(self.permitted.accepted());
+                    let in_vain = self.permitted.accepted() | self.weights.is_raised();
+                    self.stats.below_rounding += usize::from(in_vain);
                     self.can_undo = true;
                     return Ok(attempts.accepted(h, t1, ORDER, &mut self.stats));
                 }

@@ -253,14 +253,14 @@ where
     .set_label_area_size(LabelAreaPosition::Right, right)
     .build_cartesian_2d(x.0..x.1, y.0..y.1)?
     .set_secondary_coord(x.0..x.1, second.0..second.1);
-    let lines = (below.dim_in_pixel().1 / (55 * DOTS)).clamp(3, 9) as usize;
+    let fit = (below.dim_in_pixel().1 / (55 * DOTS)).clamp(3, 9) as usize;
     let mut mesh = chart.configure_mesh();
     (mesh
         .light_line_style(TRANSPARENT)
         .bold_line_style(GRID.stroke_width(DOTS))
         .axis_style(AXIS.stroke_width(DOTS)))
     .x_labels(12)
-    .y_labels(lines)
+    .y_labels(labels_of(y, fit))
     .set_all_tick_mark_size(5 * DOTS)
     .x_label_formatter(&|v| tick(*v, x_step))
     .y_label_formatter(&|v| tick(*v, y_step))
@@ -272,7 +272,7 @@ where
     if let Some(other) = plot.at_right() {
         (chart.configure_secondary_axes())
             .axis_style(AXIS.stroke_width(DOTS))
-            .y_labels(lines)
+            .y_labels(labels_of(second, fit))
             .set_all_tick_mark_size(5 * DOTS)
             .y_label_formatter(&|v| tick(*v, second_step))
             .y_desc(other.y_axis())
@@ -373,6 +373,14 @@ where
     })
 }
 
+/// Returns the number of labels to ask for where so many fit beside a range: more where the places
+/// of fewer are so far apart that no two lie within it.
+fn labels_of((low, high): Range, fit: usize) -> usize {
+    let range = RangedCoordf64::from(low..high);
+    let shows_scale = |&n: &usize| range.key_points(n).len() >= 2;
+    (fit..3 * fit).find(shows_scale).unwrap_or(fit)
+}
+
 /// Returns the distance of ticks that leaves about eight in a range: 1, 2 or 5 times a power of
 /// ten.
 fn tick_step((low, high): (f64, f64)) -> f64 {
@@ -429,6 +437,19 @@ fn y_labels_width(y: (f64, f64), step: f64) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn two_labels_at_least_show_the_scale_of_a_panel() {
+        assert_eq!(labels_of((0.0, 10.0), 3), 3);
+        for low in (0..200).map(|k| -100.0 + 0.97 * f64::from(k)) {
+            for size in (1..60).map(|k| 0.013 * 1.3f64.powi(k)) {
+                let range = (low, low + size);
+                let shown = RangedCoordf64::from(range.0..range.1);
+                let n = shown.key_points(labels_of(range, 3)).len();
+                assert!((2..=9).contains(&n), "{n} labels from {range:?}");
+            }
+        }
+    }
 
     #[test]
     fn ticks_have_the_digits_their_distance_needs() {

@@ -131,6 +131,46 @@ fn moving_a_whole_model_changes_no_answer_beyond_rounding() {
     }
 }
 
+/// A slider-crank in millimetres on the move, its loop closed to the last digits: coordinates of
+/// 180 that move by little at first.
+const SLIDER_CRANK: &str = "SLIDER-CRANK\n\
+    UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND\nPART/1, GROUND\n\
+    MARKER/1, PART=1\nMARKER/2, PART=1, REULER=90D,90D,0\n\
+    PART/2, MASS=0.5, CM=20, IP=0,0,400, REULER=50D,0,0, WZ=30\n\
+    MARKER/20, PART=2, QP=25,0,0\nMARKER/21, PART=2\nMARKER/22, PART=2, QP=50,0,0\n\
+    PART/3, MASS=0.5, CM=30, IP=0,0,1000, QG=32.13938048432697,38.3022221559489,0, \
+    REULER=-14.79327D,0,0\nMARKER/30, PART=3, QP=75,0,0\nMARKER/31, PART=3\n\
+    MARKER/32, PART=3, QP=150,0,0\nPART/4, MASS=1, CM=40, QG=177.167,0,0\nMARKER/40, PART=4\n\
+    MARKER/41, PART=4, REULER=90D,90D,0\nJOINT/1, REVOLUTE, I=21, J=1\n\
+    JOINT/2, REVOLUTE, I=31, J=22\nJOINT/3, REVOLUTE, I=40, J=32\n\
+    JOINT/4, TRANSLATIONAL, I=41, J=2\nEND\n";
+
+/// Methods permit far less in a step than the request: HHT 1e-14 of a way at 1e-9, which was less than the last digit of
+/// a coordinate, so that steps became ever shorter and the run stopped.
+#[test]
+fn no_method_asks_for_less_than_the_digits_of_a_coordinate_have() {
+    let last = |method: &str, error: f64| {
+        let mut options = options_by(&["DX(40,1)", "VX(40,1)", "WZ(20)"], method, error);
+        options.max_steps = Some(20_000);
+        let mut s = begin(whole(SLIDER_CRANK), method, options);
+        go(&mut s, Analysis::Dynamic, 0.002, 2);
+        let n_steps = s.run.record.counts.steps;
+        let ends = ["DX(40,1)", "VX(40,1)", "WZ(20)"].map(|column| running::last(&s, column));
+        (ends, n_steps)
+    };
+    let (expected, _) = last("DOP853", 1e-11);
+    for (method, most) in [("RADAU5", 100), ("BDF", 200), ("HHT", 10_000), ("NEWMARK", 10_000)] {
+        for error in [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12] {
+            let (ends, n_steps) = last(method, error);
+            assert!(n_steps < most, "{method} at {error:e}: {n_steps} steps");
+            for (end, expected) in ends.iter().zip(&expected) {
+                let off = ((end - expected) / expected).abs();
+                assert!(off < 3.0 * error + 1e-10, "{method} at {error:e}: {off:e}");
+            }
+        }
+    }
+}
+
 /// A part on a bushing, its marker off its mass, drawn 0.2 m from where the bushing is without load.
 fn on_a_bushing(mass: f64, [stiffness, damping]: [f64; 2]) -> String {
     let [turning, slowing] = [stiffness, damping].map(|x| 1e-3 * x);
