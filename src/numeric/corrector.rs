@@ -19,8 +19,8 @@
 //!
 //! Unknowns whose error is not controlled are judged loosely, multipliers of higher index not at
 //! all: they are linear in the rest of the iteration and carry rounding errors of order 1/h², which
-//! no iteration removes. Corrections of the size of rounding that fall no more with a fresh matrix
-//! end the iteration as well: they go to and fro between neighbouring numbers for ever.
+//! no iteration removes. Corrections of the size of rounding that fall no more end the iteration as
+//! well: they go to and fro between neighbouring numbers for ever.
 //!
 //! Source: Brenan, Campbell & Petzold, Numerical Solution of Initial-Value Problems in DAEs, 5.2.2;
 //! Petzold & Lötstedt 1986 for (3).
@@ -332,7 +332,8 @@ impl Corrector {
             let mut factor = self.rate_factor;
             if iteration == 0 {
                 first = size;
-                if size <= at.rounding || fresh && size <= 1e-4 * PERMITTED_REST {
+                let rounding = at.rounding.min(PERMITTED_REST);
+                if size <= rounding || fresh && size <= 1e-4 * PERMITTED_REST {
                     return Ok(());
                 }
                 // a Newton iteration converges quadratically: a correction larger than the measured
@@ -348,11 +349,7 @@ impl Corrector {
                 }
                 // corrections of the size of rounding that fall no more are all that it leaves
                 if size <= at.rounding && size > SLOWEST_RATE * before {
-                    if fresh {
-                        return Ok(());
-                    }
-                    stagnant = Some(size);
-                    break;
+                    return Ok(());
                 }
                 factor = rate / (1.0 - rate);
                 (self.rate_factor, self.measured) = (factor, first);

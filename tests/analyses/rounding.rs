@@ -146,12 +146,13 @@ const SLIDER_CRANK: &str = "SLIDER-CRANK\n\
     JOINT/4, TRANSLATIONAL, I=41, J=2\nEND\n";
 
 /// Methods permit far less in a step than the request: HHT 1e-14 of a way at 1e-9, which was less than the last digit of
-/// a coordinate, so that steps became ever shorter and the run stopped.
+/// a coordinate, so that steps became ever shorter and the run stopped. And Newton's iteration must not leave more than
+/// they permit: what it left at once as rounding, 1e-13, added up to 7e-9.
 #[test]
 fn no_method_asks_for_less_than_the_digits_of_a_coordinate_have() {
     let last = |method: &str, error: f64| {
         let mut options = options_by(&["DX(40,1)", "VX(40,1)", "WZ(20)"], method, error);
-        options.max_steps = Some(20_000);
+        options.max_steps = Some(50_000);
         let mut s = begin(whole(SLIDER_CRANK), method, options);
         go(&mut s, Analysis::Dynamic, 0.002, 2);
         let n_steps = s.run.record.counts.steps;
@@ -159,13 +160,18 @@ fn no_method_asks_for_less_than_the_digits_of_a_coordinate_have() {
         (ends, n_steps)
     };
     let (expected, _) = last("DOP853", 1e-11);
-    for (method, most) in [("RADAU5", 100), ("BDF", 200), ("HHT", 10_000), ("NEWMARK", 10_000)] {
+    for (method, most) in [
+        ("RADAU5", 100),
+        ("BDF", 200),
+        ("HHT", 5_000),
+        ("NEWMARK", 40_000),
+    ] {
         for error in [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12] {
             let (ends, n_steps) = last(method, error);
             assert!(n_steps < most, "{method} at {error:e}: {n_steps} steps");
             for (end, expected) in ends.iter().zip(&expected) {
                 let off = ((end - expected) / expected).abs();
-                assert!(off < 3.0 * error + 1e-10, "{method} at {error:e}: {off:e}");
+                assert!(off < error.max(1e-11), "{method} at {error:e}: {off:e}");
             }
         }
     }

@@ -10,6 +10,7 @@ impl Row {
     pub(super) fn reason(&self) -> String {
         match &self.outcome {
             Outcome::Done(_) => String::new(),
+            Outcome::Ended(status, reason) if reason.starts_with(status.word()) => reason.clone(),
             Outcome::Ended(status, reason) => format!("{}: {reason}", status.word()),
             Outcome::Refused(reason) => format!("refused: {reason}"),
         }
@@ -296,6 +297,12 @@ mod tests {
                     Outcome::Ended(Status::Stopped, "it, \"failed\"".into()),
                     0.0,
                 ),
+                row(
+                    "HHT",
+                    1e-4,
+                    Outcome::Ended(Status::Stopped, "stopped at time 1: why".into()),
+                    0.0,
+                ),
                 row("BDF", 1e-3, Outcome::Refused("no <such> thing".into()), 0.0),
             ],
             left_out: vec![LeftOut {
@@ -315,6 +322,7 @@ mod tests {
         for part in [
             "≤ ref.",
             "stopped: it, \"failed\"",
+            "  stopped at time 1: why",
             "refused: no",
             "left out: HHT at 1e-6",
         ] {
@@ -328,10 +336,10 @@ mod tests {
         let mut reader = csv::Reader::from_reader(study.csv().into_bytes().leak() as &[u8]);
         let width = reader.headers().expect("names").len();
         let rows: Vec<_> = reader.records().map(|r| r.expect("a row")).collect();
-        assert_eq!(rows.len(), 5);
+        assert_eq!(rows.len(), 6);
         assert!(rows.iter().all(|r| r.len() == width));
         let json = study.json(&[1e-3]);
-        assert_eq!(json["runs"].as_array().map(Vec::len), Some(5));
+        assert_eq!(json["runs"].as_array().map(Vec::len), Some(6));
         assert_eq!(json["runs"][1]["below_trust"], true);
         assert_eq!(json["recommended"][0]["run"]["method"], "RADAU5");
     }
