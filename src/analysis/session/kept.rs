@@ -302,3 +302,43 @@ impl Session {
         Kept::new(Some(model), mode, system.clone(), assembly.clone())
     }
 }
+
+#[cfg(all(test, feature = "cli"))]
+mod tests {
+    use super::super::script::obey;
+    use super::super::{Options, Session};
+    use crate::analysis::watch::Unwatched;
+    use crate::dataset::command::Script;
+    use crate::model::Model;
+
+    const PENDULUM: &str = "pendulum\nPART/1, GROUND\nMARKER/10, PART=1\n\
+        PART/2, MASS=1, CM=20, IP=0.1,0.1,0.1, QG=1,0,0\nMARKER/20, PART=2\n\
+        MARKER/21, PART=2, QP=-1,0,0\nJOINT/1, REVOLUTE, I=21, J=10\n\
+        REQUEST/1, F2=DX(20,10)\\F3=VY(20,10)\nACCGRAV/JGRAV=-9.81\nEND\n";
+    const COMMANDS: &str = "FILE/MODEL=m\nSIMULATE/DYNAMIC, END=0.5, STEPS=10\n\
+        SIMULATE/DYNAMIC, END=1, STEPS=10\nSTOP\n";
+
+    /// Returns the bits of all rows, and whether a model is kept to go on with.
+    fn obeyed(ends: bool) -> (Vec<u64>, bool) {
+        let model = Model::from_text(PENDULUM).expect("a model");
+        let mut session = Session::new(model, "pendulum", Options::default());
+        if ends {
+            session.end_with_commands();
+        }
+        let steps = Script::from_text(COMMANDS).expect("commands").steps;
+        let obeyed = obey(&mut session, &steps, |_, _| {}, &mut Unwatched);
+        obeyed.expect("simulations");
+        let values = session.run.columns.iter().flat_map(|c| &c.values);
+        let kept = session.kept.as_ref().expect("a system");
+        (values.map(|x| x.to_bits()).collect(), kept.model.is_some())
+    }
+
+    #[test]
+    fn the_last_simulation_of_a_run_keeps_no_model_and_changes_no_bit() {
+        let (rows, goes_on) = obeyed(false);
+        let (last, keeps) = obeyed(true);
+        assert!(goes_on && !keeps);
+        assert!(rows.len() > 60, "{}", rows.len());
+        assert_eq!(rows, last);
+    }
+}
