@@ -303,7 +303,7 @@ impl Session {
     }
 }
 
-#[cfg(all(test, feature = "cli"))]
+#[cfg(test)]
 mod tests {
     use super::super::script::obey;
     use super::super::{Options, Session};

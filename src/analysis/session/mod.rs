@@ -287,7 +287,7 @@ impl Session {
 
     /// Says that nothing is asked of this session after the commands that it will obey: the last
     /// simulation keeps nothing to go on with.
-    #[cfg(feature = "cli")]
+    #[cfg(any(feature = "cli", test))]
     pub(crate) fn end_with_commands(&mut self) {
         self.ends_with_commands = true;
     }
