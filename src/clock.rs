@@ -29,6 +29,32 @@ mod reading {
     }
 }
 
+/// The clock of the processor, where the system answers in one question.
+#[cfg(feature = "solver")]
+mod processor {
+    /// Returns the processor time that this process has used, in s.
+    #[cfg(all(feature = "native", target_os = "linux", target_pointer_width = "64"))]
+    pub fn process_seconds() -> Option<f64> {
+        // SAFETY: the signature is that of time.h; any thread may ask at any time.
+        #[allow(unsafe_code)]
+        unsafe extern "C" {
+            safe fn clock() -> std::ffi::c_long;
+        }
+        // CLOCKS_PER_SEC is a million by POSIX; -1: the system does not tell
+        let microseconds = clock();
+        (microseconds >= 0).then_some(1e-6 * microseconds as f64)
+    }
+
+    /// Returns nothing: nobody answers.
+    #[cfg(not(all(feature = "native", target_os = "linux", target_pointer_width = "64")))]
+    pub fn process_seconds() -> Option<f64> {
+        None
+    }
+}
+
+#[cfg(feature = "solver")]
+pub(crate) use processor::process_seconds;
+
 /// A moment on a clock that does not go back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Moment(Duration);
@@ -105,6 +131,22 @@ impl Add<Duration> for Moment {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(feature = "solver")]
+    #[test]
+    fn work_uses_processor_time() {
+        let Some(begin) = process_seconds() else {
+            return;
+        };
+        let moment = Moment::now();
+        while process_seconds().is_some_and(|now| now < begin + 1e-3) {
+            assert!(moment.elapsed() < Duration::from_secs(60), "time is told");
+        }
+        // no more than all threads can have used
+        let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
+        let most = (threads as f64 + 1.0) * moment.elapsed().as_secs_f64() + 0.01;
+        assert!(process_seconds().is_some_and(|now| now < begin + most));
+    }
 
     #[test]
     fn a_wait_ends_however_often_it_is_asked_about() {

@@ -15,7 +15,9 @@ use super::session::columns::{name_of, unit_of};
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::Input;
-use crate::model::{ElementId, ElementKind, Model, Orientation, Text, geometry};
+use crate::model::{
+    ElementId, ElementKind, Marker, MarkerOwner, Model, Orientation, Text, geometry,
+};
 use crate::physics::kinematic;
 use crate::results::{Column, Run, digest};
 use crate::space::{Frame, MarkerState, Vec3, rotation};
@@ -235,27 +237,40 @@ impl<'a> Recorded<'a> {
 /// parts: 16 hexadecimal digits.
 pub fn marker_digest(model: &Model) -> String {
     let mut text = String::new();
-    for (number, marker) in &model.markers {
-        // writing to a text cannot fail
-        let _ = write!(text, "{number} {:?} ", marker.owner);
-        push_numbers(&mut text, marker.qp);
-        match marker.orientation {
-            Orientation::Euler(angles) => {
-                text.push_str(" Euler(");
-                push_numbers(&mut text, angles);
-                text.push(')');
-            }
-            other => {
-                let _ = write!(text, " {other:?}");
-            }
-        }
-        text.push_str(if marker.floating {
-            " true\n"
-        } else {
-            " false\n"
-        });
+    for (&number, marker) in &model.markers {
+        push_marker(&mut text, number, marker);
     }
     digest(text.bytes())
+}
+
+/// Appends what is digested of a marker. Records of earlier versions hold the digest of what `{:?}`
+/// writes: this is the same text without its work.
+fn push_marker(text: &mut String, number: u32, marker: &Marker) {
+    push_whole(text, number);
+    match marker.owner {
+        MarkerOwner::Part(part) => {
+            text.push_str(" Part(");
+            push_whole(text, part);
+            text.push_str(") ");
+        }
+        // writing to a text cannot fail
+        other => drop(write!(text, " {other:?} ")),
+    }
+    push_numbers(text, marker.qp);
+    match marker.orientation {
+        Orientation::Euler(angles) => {
+            text.push_str(" Euler(");
+            push_numbers(text, angles);
+            text.push(')');
+        }
+        Orientation::Aligned => text.push_str(" Aligned"),
+        other => drop(write!(text, " {other:?}")),
+    }
+    text.push_str(if marker.floating {
+        " true\n"
+    } else {
+        " false\n"
+    });
 }
 
 /// Appends numbers as `{:?}` does; small whole ones, which most are, without its work.
@@ -265,12 +280,30 @@ fn push_numbers(text: &mut String, numbers: [f64; 3]) {
     for (k, x) in numbers.into_iter().enumerate() {
         text.push_str(if k > 0 { ", " } else { "" });
         let whole = x as i32;
-        let _ = match x.abs() < SMALL && f64::from(whole).to_bits() == x.to_bits() {
-            true => write!(text, "{whole}.0"),
-            false => write!(text, "{x:?}"),
-        };
+        if x.abs() < SMALL && f64::from(whole).to_bits() == x.to_bits() {
+            text.push_str(if whole < 0 { "-" } else { "" });
+            push_whole(text, whole.unsigned_abs());
+            text.push_str(".0");
+        } else {
+            let _ = write!(text, "{x:?}");
+        }
     }
     text.push(']');
+}
+
+/// Appends a whole number.
+fn push_whole(text: &mut String, number: u32) {
+    let mut digits = [0; 10];
+    let (mut first, mut rest) = (digits.len(), number);
+    loop {
+        first -= 1;
+        digits[first] = b'0' + (rest % 10) as u8;
+        rest /= 10;
+        if rest == 0 {
+            break;
+        }
+    }
+    text.extend(digits[first..].iter().map(|&digit| char::from(digit)));
 }
 
 #[cfg(test)]
@@ -287,6 +320,30 @@ mod tests {
                 push_numbers(&mut text, numbers);
                 prop_assert_eq!(text, format!("{numbers:?}"));
             }
+        }
+
+        #[test]
+        fn markers_of_a_digest_are_those_of_debug(number: u32, owner: u32, x in -9i32..9, kind in 0..6) {
+            let qp = [f64::from(x), 0.0, 0.1 * f64::from(x)];
+            let marker = Marker {
+                owner: match kind {
+                    0 => MarkerOwner::PointMass(owner),
+                    1 => MarkerOwner::Other(ElementKind::FlexBody.id(owner)),
+                    _ => MarkerOwner::Part(owner),
+                },
+                orientation: match kind {
+                    2 => Orientation::default(),
+                    3 => Orientation::Points { z: Some(qp), x: None, use_x: false },
+                    _ => Orientation::Euler(qp),
+                },
+                floating: kind == 4,
+                qp,
+                ..Marker::default()
+            };
+            let mut text = String::new();
+            push_marker(&mut text, number, &marker);
+            let Marker { owner, orientation, floating, .. } = marker;
+            prop_assert_eq!(text, format!("{number} {owner:?} {qp:?} {orientation:?} {floating}\n"));
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::system::System;
 use super::trajectory::Trajectory;
 use super::watch::Watch;
-use crate::clock::Moment;
+use crate::clock::{self, Moment};
 use crate::disk;
 use crate::numeric::Stats;
 use crate::results::Run;
@@ -33,9 +33,12 @@ fn settle() {
     std::thread::yield_now();
 }
 
-/// Returns the processor time of all threads of this process that are still there, in s, where the
-/// system tells it.
+/// Returns the processor time of this process, in s, where the system tells it: of all threads that
+/// are still there, where only files say it.
 fn process_seconds() -> Option<f64> {
+    if let Some(seconds) = clock::process_seconds() {
+        return Some(seconds);
+    }
     settle();
     let threads = disk::read_dir("/proc/self/task").ok()?;
     let seconds = threads.filter_map(|t| thread_seconds(Some(&t.ok()?.path())));

@@ -226,14 +226,17 @@ pub fn main(one_thread: fn()) -> ExitCode {
     if !matches!(cli.verb, Verb::Sweep(_)) {
         one_thread();
     }
-    std::thread::scope(|scope| {
+    // the process ends where its work does: nobody waits until the stack is taken down
+    let work = || -> Exit { std::process::exit(obey(&cli).code().into()) };
+    let exit = std::thread::scope(|scope| {
         let worker = std::thread::Builder::new().stack_size(STACK_BYTES);
-        match worker.spawn_scoped(scope, || obey(&cli)) {
-            Ok(worker) => worker.join().unwrap_or(ExitCode::from(Exit::Bug.code())),
+        match worker.spawn_scoped(scope, work) {
+            Ok(worker) => worker.join().unwrap_or(Exit::Bug),
             // a system that has no room for the stack has room for most models
             Err(_) => obey(&cli),
         }
-    })
+    });
+    ExitCode::from(exit.code())
 }
 
 /// Returns the arguments of the process; ends it where they are not understood or ask for help.
@@ -252,7 +255,7 @@ fn parsed() -> Cli {
 }
 
 /// Runs a command.
-fn obey(cli: &Cli) -> ExitCode {
+fn obey(cli: &Cli) -> Exit {
     let verb = std::panic::AssertUnwindSafe(|| match &cli.verb {
         Verb::Animate(args) => animate::run(args),
         Verb::Check(args) => check::run(args),
@@ -281,7 +284,7 @@ fn obey(cli: &Cli) -> ExitCode {
         Verb::Sweep(args) => sweep::run(args),
         Verb::Verify(args) => verify::run(args),
     });
-    let exit = match std::panic::catch_unwind(verb) {
+    match std::panic::catch_unwind(verb) {
         Ok(Ok(exit)) => exit,
         Ok(Err(failure)) => {
             complain(&failure.diagnostics, &failure.sources);
@@ -295,8 +298,7 @@ fn obey(cli: &Cli) -> ExitCode {
             );
             Exit::Bug
         }
-    };
-    ExitCode::from(exit.code())
+    }
 }
 
 /// Prints diagnostics on standard error.

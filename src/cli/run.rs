@@ -370,6 +370,7 @@ fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session 
     if is_as_read {
         session.was_read();
     }
+    session.end_with_commands();
     session.run.record.model = args.model.display().to_string();
     let folder = args.model.parent().map(Path::to_path_buf);
     session.folders = args.out.clone().into_iter().chain(folder).collect();

@@ -18,8 +18,8 @@ use std::sync::Arc;
 /// A system that has done its simulation, and the model it was made of.
 #[derive(Debug)]
 pub(super) struct Kept {
-    /// without the constants that are external inputs of the scene
-    model: Arc<Model>,
+    /// without the constants that are external inputs of the scene; `None`: nothing comes after
+    model: Option<Arc<Model>>,
     mode: u32,
     system: System,
     assembly: Assembly,
@@ -29,7 +29,12 @@ pub(super) struct Kept {
 
 impl Kept {
     /// Keeps a system with what [`Session::made_of`] says.
-    pub(super) fn new(model: Arc<Model>, mode: u32, system: System, assembly: Assembly) -> Self {
+    pub(super) fn new(
+        model: Option<Arc<Model>>,
+        mode: u32,
+        system: System,
+        assembly: Assembly,
+    ) -> Self {
         Self {
             model,
             mode,
@@ -57,7 +62,9 @@ impl Kept {
     /// Returns whether a model differs from the one of this system by nothing but the constants
     /// that are external inputs.
     fn is_of(&self, model: &mut Model) -> bool {
-        without_constants(model, &self.system.scene, |model| *model == *self.model)
+        self.model.as_deref().is_some_and(|kept| {
+            without_constants(model, &self.system.scene, |model| *model == *kept)
+        })
     }
 }
 
@@ -160,7 +167,8 @@ impl Session {
     /// Keeps what a method leaves with the state to which it has led.
     pub(super) fn keep_left(&mut self, left: Option<Left>, scene: &Scene) {
         // closures may answer otherwise
-        let Some(left) = left.filter(|_| self.hooks.is_empty()) else {
+        let is_kept = self.hooks.is_empty() && !self.is_last;
+        let Some(left) = left.filter(|_| is_kept) else {
             return;
         };
         let model = self.made_of(scene);
@@ -195,7 +203,7 @@ impl Session {
             .begin(carried.t, &carried.past);
         system.resolve().ok()?;
         system.begin_sensing();
-        self.kept_model = Some(kept.model);
+        self.kept_model = kept.model;
         self.goes_on = true;
         Some((system, kept.assembly))
     }
@@ -209,7 +217,7 @@ impl Session {
             return None;
         }
         let (mut system, assembly) = (kept.system.clone(), kept.assembly.clone());
-        let model = Arc::clone(&kept.model);
+        let model = kept.model.clone();
         let before = system.numbers.clone();
         self.set_constants(&system.scene, &mut system.numbers);
         if system.numbers != before {
@@ -222,7 +230,7 @@ impl Session {
             let y = system.numbers[l.states()].to_vec();
             self.put(&mut system, (self.time(), &y), mode).ok()?;
         }
-        self.kept_model = Some(model);
+        self.kept_model = model;
         Some((system, assembly))
     }
 
@@ -291,6 +299,46 @@ impl Session {
     pub(super) fn kept_start(&mut self, mode: u32, system: &System, assembly: &Assembly) -> Kept {
         let model = self.made_of(&system.scene);
         self.kept_model = Some(Arc::clone(&model));
-        Kept::new(model, mode, system.clone(), assembly.clone())
+        Kept::new(Some(model), mode, system.clone(), assembly.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::script::obey;
+    use super::super::{Options, Session};
+    use crate::analysis::watch::Unwatched;
+    use crate::dataset::command::Script;
+    use crate::model::Model;
+
+    const PENDULUM: &str = "pendulum\nPART/1, GROUND\nMARKER/10, PART=1\n\
+        PART/2, MASS=1, CM=20, IP=0.1,0.1,0.1, QG=1,0,0\nMARKER/20, PART=2\n\
+        MARKER/21, PART=2, QP=-1,0,0\nJOINT/1, REVOLUTE, I=21, J=10\n\
+        REQUEST/1, F2=DX(20,10)\\F3=VY(20,10)\nACCGRAV/JGRAV=-9.81\nEND\n";
+    const COMMANDS: &str = "FILE/MODEL=m\nSIMULATE/DYNAMIC, END=0.5, STEPS=10\n\
+        SIMULATE/DYNAMIC, END=1, STEPS=10\nSTOP\n";
+
+    /// Returns the bits of all rows, and whether a model is kept to go on with.
+    fn obeyed(ends: bool) -> (Vec<u64>, bool) {
+        let model = Model::from_text(PENDULUM).expect("a model");
+        let mut session = Session::new(model, "pendulum", Options::default());
+        if ends {
+            session.end_with_commands();
+        }
+        let steps = Script::from_text(COMMANDS).expect("commands").steps;
+        let obeyed = obey(&mut session, &steps, |_, _| {}, &mut Unwatched);
+        obeyed.expect("simulations");
+        let values = session.run.columns.iter().flat_map(|c| &c.values);
+        let kept = session.kept.as_ref().expect("a system");
+        (values.map(|x| x.to_bits()).collect(), kept.model.is_some())
+    }
+
+    #[test]
+    fn the_last_simulation_of_a_run_keeps_no_model_and_changes_no_bit() {
+        let (rows, goes_on) = obeyed(false);
+        let (last, keeps) = obeyed(true);
+        assert!(goes_on && !keeps);
+        assert!(rows.len() > 60, "{}", rows.len());
+        assert_eq!(rows, last);
     }
 }

@@ -158,6 +158,10 @@ pub struct Session {
     pub at_rest_first: bool,
     /// who read the model has checked it, and nothing has changed it since
     is_checked: bool,
+    /// commands that are obeyed are the last that is asked of this session
+    ends_with_commands: bool,
+    /// nothing comes after the present simulation
+    is_last: bool,
     /// a sensor ended the run, not only its simulation
     halted: bool,
     /// columns that have gaps
@@ -234,6 +238,8 @@ impl Session {
             folders: Vec::new(),
             at_rest_first: false,
             is_checked: false,
+            ends_with_commands: false,
+            is_last: false,
             halted: false,
             gaps: Gaps::default(),
             receiver: None,
@@ -277,6 +283,13 @@ impl Session {
     #[cfg(feature = "cli")]
     pub(crate) fn was_read(&mut self) {
         self.is_checked = true;
+    }
+
+    /// Says that nothing is asked of this session after the commands that it will obey: the last
+    /// simulation keeps nothing to go on with.
+    #[cfg(any(feature = "cli", test))]
+    pub(crate) fn end_with_commands(&mut self) {
+        self.ends_with_commands = true;
     }
 
     /// Chooses the columns anew after a command has changed the model, while there are no rows.

@@ -115,6 +115,8 @@ pub fn obey(
         let located = |d: Diagnostic| located(d, step);
         match &step.command {
             Command::Simulate(simulate) => {
+                let ends = |step: &Step| matches!(step.command, Command::Stop);
+                session.is_last = session.ends_with_commands && steps[k + 1..].iter().all(ends);
                 let simulated = session.obey_simulate(simulate, step, &mut before, watch)?;
                 status = simulated.unwrap_or(status);
                 if simulated.is_some() && (status != Status::Completed || session.halted()) {

@@ -126,7 +126,7 @@ impl Session {
             start.take_derivatives(&system);
         }
         if self.hooks.is_empty() && analysis == Analysis::Dynamic && status == Status::Completed {
-            let model = self.made_of(&system.scene);
+            let model = (!self.is_last).then(|| self.made_of(&system.scene));
             self.kept = Some(Box::new(Kept::new(model, DYNAMIC, system, assembly)));
         }
         Ok(status)
