@@ -334,7 +334,7 @@ pub fn approach(
         cams::track(scene, configuration, &here);
         cams::place(scene, configuration, &starts, &here);
         let configured = scene.within(configuration);
-        let (mut g, mut gradient, _) = rows_at(configured, t, q, x);
+        let (mut g, mut gradient) = rows_at(configured, t, q, x);
         for r in (0..g.len()).filter(|&r| asked(configured, r)) {
             g[r] = 0.0;
             gradient[r].clear();
@@ -354,7 +354,7 @@ pub fn approach(
         for (_, slopes) in &places {
             let mut slopes = slopes.clone();
             slopes.sort_by_key(|e| e.0);
-            a.push(assemble::merged(&slopes));
+            a.push(assemble::merged(slopes));
         }
         let all = g
             .iter()
