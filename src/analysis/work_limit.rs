@@ -124,8 +124,8 @@ impl WorkLimit {
     }
 
     /// Returns the processor time that is left at least, in s; zero or less: none. A thread uses no
-    /// more of it than passes: before that much has, the clock of the processor, whose reading takes
-    /// microseconds, is not looked at; nor for limits that it is too coarse for.
+    /// more of it than passes: before that much has, the clock of the processor, whose reading
+    /// takes microseconds, is not looked at; nor for limits that it is too coarse for.
     pub fn left(&self) -> f64 {
         let left = self.seconds - self.clock.begin.elapsed().as_secs_f64();
         match left > 0.0 || self.seconds < RESOLUTION {

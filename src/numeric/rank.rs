@@ -105,7 +105,7 @@ impl Rank {
     }
 
     /// Decides the rank as [`Rank::of`] does, of rows that nobody else needs.
-    pub fn of_rows(rows: Vec<Vec<f64>>, n: usize, tolerance: f64) -> Self {
+    pub(crate) fn of_rows(rows: Vec<Vec<f64>>, n: usize, tolerance: f64) -> Self {
         let Ok(rank) = Self::of_rows_while(rows, n, tolerance, &mut goes_on);
         rank
     }
@@ -114,7 +114,7 @@ impl Rank {
     ///
     /// # Errors
     /// The answer of `look`.
-    pub fn of_rows_while<E>(
+    pub(crate) fn of_rows_while<E>(
         rows: Vec<Vec<f64>>,
         n: usize,
         tolerance: f64,

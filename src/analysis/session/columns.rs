@@ -500,9 +500,9 @@ fn entity_of(name: String, word: &str, id: ElementId) -> Entity {
 /// more, and all of them together fit the caches.
 const ROWS_OF_BLOCK: usize = 32;
 
-/// What columns are evaluated with, from one simulation to the next.
+/// The numbers that columns are evaluated with, from one simulation to the next.
 #[derive(Debug, Default)]
-pub struct Scratch {
+pub(super) struct Scratch {
     work: Work,
     /// rows that go to their columns together
     block: Vec<f64>,
@@ -512,12 +512,15 @@ pub struct Scratch {
     changes: Vec<bool>,
 }
 
-/// Evaluates the columns at each row of numbers and appends them to the run. `more`: rows that are
-/// known to follow later.
-///
-/// `branches`: the numbers on the branches between which the motion stays at the row of an index,
-/// and the part of each in the mean that is what happens.
-pub fn append<'a>(
+/// Evaluates the columns at each row of numbers and appends them to the run.
+pub fn append(run: &mut Run, program: &Program, rows: &[Vec<f64>]) {
+    append_with(run, (program, &mut Scratch::default()), (rows, 0), |_| None);
+}
+
+/// Appends the columns as [`append`] does; `more`: rows that are known to follow later; `branches`:
+/// the numbers on the branches between which the motion stays at the row of an index, and the part
+/// of each in the mean that is what happens.
+pub(super) fn append_with<'a>(
     run: &mut Run,
     (program, scratch): (&Program, &mut Scratch),
     (rows, more): (&[Vec<f64>], usize),

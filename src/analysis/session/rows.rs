@@ -131,7 +131,7 @@ impl Session {
     /// Adds rows to the last sequence.
     pub(super) fn more_rows(&mut self, program: &Program, rows: &[Vec<f64>]) {
         let columns = (program, &mut self.scratch);
-        columns::append(&mut self.run, columns, (rows, 0), |_| None);
+        columns::append_with(&mut self.run, columns, (rows, 0), |_| None);
         self.hand_over(rows.len());
     }
 
@@ -197,7 +197,7 @@ impl Session {
             let rows = &trajectory.rows[from - released..end - released];
             let means = |k: usize| trajectory.means.get(&(from + k));
             let (columns, more) = ((&seen.program, &mut self.scratch), self.rows_to_come);
-            columns::append(&mut self.run, columns, (rows, more), means);
+            columns::append_with(&mut self.run, columns, (rows, more), means);
             let chosen = trajectory.selections.get(..seen.selections);
             let chosen = chosen.and_then(|c| c.last()).map(|c| &c.2[..]);
             let active = chosen.unwrap_or(&seen.active);

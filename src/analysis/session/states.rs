@@ -126,7 +126,7 @@ impl Session {
         let mut run = Run::new("late", "", self.run.units.clone());
         run.add_column(name, "");
         let columns = (&program, &mut self.scratch);
-        columns::append(&mut run, columns, (&stretch.rows, 0), |k| {
+        columns::append_with(&mut run, columns, (&stretch.rows, 0), |k| {
             stretch.means.get(&k)
         });
         Ok(run

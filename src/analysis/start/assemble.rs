@@ -96,7 +96,7 @@ fn hold(
     q: &[f64],
     x: &[f64],
 ) -> Vec<Warning> {
-    let (shown, _) = rows_at(scene.within(configuration), t, q, x);
+    let (shown, _) = rows_at_rest(scene.within(configuration), t, q, x);
     let mut told = Vec::new();
     begin_motions(scene, configuration, t, q, x);
     let constants = configuration.sums.iter_mut();
@@ -164,7 +164,7 @@ fn begin_motions(scene: &Scene, configuration: &mut Configuration, t: f64, q: &[
 
 /// Evaluates values and gradients of all rows at an instant: g (m), rows of G (m × n_v); zero for
 /// those that are left out within tolerance.
-pub fn rows_at(
+pub(in crate::analysis) fn rows_at_rest(
     scene: Configured<'_>,
     t: f64,
     q: &[f64],
@@ -183,7 +183,7 @@ pub fn rows_at(
 }
 
 /// The same, with the drifts ġ₀ (m).
-pub fn rows_and_drifts_at(
+pub fn rows_at(
     scene: Configured<'_>,
     t: f64,
     q: &[f64],
@@ -359,7 +359,7 @@ pub(super) fn close_while<E>(
         let here = numbers(scene.within(configuration), t, q, &still, x);
         cams::track(scene, configuration, &here);
         let configured = scene.within(configuration);
-        let (mut g, mut gradient) = rows_at(configured, t, q, x);
+        let (mut g, mut gradient) = rows_at_rest(configured, t, q, x);
         for r in (0..g.len()).filter(|&r| ignored(configured, r)) {
             g[r] = 0.0;
             gradient[r].clear();
@@ -464,7 +464,7 @@ pub(super) fn positions_while(
         .warnings
         .extend(aligned.into_iter().map(Warning::from));
     look()?;
-    let (_, gradient) = rows_at(here, t, q, x);
+    let (_, gradient) = rows_at_rest(here, t, q, x);
     let n = scene.layout.n_v;
     look()?;
     let (independent, dependent) = rank_of_rows(scene, &gradient, &[], look)?;
@@ -651,8 +651,8 @@ mod tests {
             for k in 0..4 {
                 let moved = |(j, q): (usize, &f64)| q + 0.01 * f64::from(k) * (j as f64).cos();
                 let q: Vec<f64> = scene.initial_q.iter().enumerate().map(moved).collect();
-                let (g, gradient) = rows_at(here, 0.1, &q, &x);
-                let (same_g, same_gradient, _) = rows_and_drifts_at(here, 0.1, &q, &x);
+                let (g, gradient) = rows_at_rest(here, 0.1, &q, &x);
+                let (same_g, same_gradient, _) = rows_at(here, 0.1, &q, &x);
                 let bits = |g: &DVector<f64>, gradient: &[SparseRow]| -> Vec<(usize, u64)> {
                     let values = g.iter().copied().enumerate();
                     let all = values.chain(gradient.iter().flatten().copied());

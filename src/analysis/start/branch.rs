@@ -17,7 +17,7 @@
 //! there the rows themselves are closed. It is asked for only where the rows alone have failed or
 //! have led to an opposite.
 
-use crate::analysis::start::assemble::{least_change, merged, numbers, rows_at};
+use crate::analysis::start::assemble::{least_change, merged, numbers, rows_at_rest};
 use crate::analysis::start::placement::log;
 use crate::model::ElementId;
 use crate::physics::action::Action;
@@ -432,7 +432,7 @@ pub fn turn(
         let here = numbers(scene.within(configuration), t, q, &still, x);
         cams::track(scene, configuration, &here);
         let configured = scene.within(configuration);
-        let (mut g, mut gradient) = rows_at(configured, t, q, x);
+        let (mut g, mut gradient) = rows_at_rest(configured, t, q, x);
         for r in (0..g.len()).filter(|&r| turns_or_held(configured, r)) {
             g[r] = 0.0;
             gradient[r].clear();

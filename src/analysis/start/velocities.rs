@@ -3,7 +3,7 @@
 //! given.
 
 use super::assemble::{
-    DEPENDENT, EMPTY, directions, least_change, numbers, parts, rank_while, rows_and_drifts_at,
+    DEPENDENT, EMPTY, directions, least_change, numbers, parts, rank_while, rows_at,
 };
 use super::given_velocities::{Given, GivenVelocities, Level};
 use super::initial_conditions::of_joints;
@@ -107,7 +107,7 @@ pub(in crate::analysis) fn velocities_while(
     look: Look<'_>,
 ) -> Result<Beginning, Vec<Diagnostic>> {
     let n = scene.layout.n_v;
-    let (_, gradient, drift) = rows_and_drifts_at(scene, t, q, x);
+    let (_, gradient, drift) = rows_at(scene, t, q, x);
     look()?;
     // v = v₀ + N z, with N the null space of the rows
     let firm = without_empty(scene, &gradient);
@@ -441,7 +441,7 @@ pub(in crate::analysis) fn nearest_velocities(
     x: &[f64],
     v: &[f64],
 ) -> Vec<f64> {
-    let (_, gradient, drift) = rows_and_drifts_at(scene, t, q, x);
+    let (_, gradient, drift) = rows_at(scene, t, q, x);
     let given = DVector::from_column_slice(v);
     let mut missing = -drift;
     for (r, row) in gradient.iter().enumerate() {

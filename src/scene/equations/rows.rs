@@ -81,7 +81,7 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// Returns value and gradient of a row, without its rates where these can be left out.
-    pub fn row_at_rest(&self, r: usize) -> (S, Vec<(usize, S)>) {
+    pub(crate) fn row_at_rest(&self, r: usize) -> (S, Vec<(usize, S)>) {
         if let RowKind::Markers { law, i, j, motion } = self.scene.rows[r].kind {
             let drive = motion.map(|m| self.row_drive(m));
             let seeded = self.along_twists(law, (i, j), drive);

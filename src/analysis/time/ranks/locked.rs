@@ -68,7 +68,7 @@ fn driver(scene: Configured<'_>, numbers: &[f64], rows: &[usize], factors: &[f64
     };
     let at_motions = |displacements: &[f64]| {
         let there = scene.configuration.with_motions_at(displacements);
-        assemble::rows_at(scene.within(&there), t, q, x)
+        assemble::rows_at_rest(scene.within(&there), t, q, x)
     };
     let (still, _) = at_motions(&values);
     let push = |k: usize| {
