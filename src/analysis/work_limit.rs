@@ -126,15 +126,15 @@ impl WorkLimit {
         Self { seconds, clock }
     }
 
-    /// Returns the processor time that is left, in s; zero or less: none. Of limits that the clock
-    /// of the processor is too coarse for, the time that has passed is taken away.
+    /// Returns the processor time that is left at least, in s; zero or less: none. A thread uses no
+    /// more of it than passes: before that much has, the clock of the processor, whose reading
+    /// takes microseconds, is not looked at; nor for limits that it is too coarse for.
     pub fn left(&self) -> f64 {
-        let used = if self.seconds < RESOLUTION {
-            self.clock.begin.elapsed().as_secs_f64()
-        } else {
-            self.clock.seconds()
-        };
-        self.seconds - used
+        let left = self.seconds - self.clock.begin.elapsed().as_secs_f64();
+        match left > 0.0 || self.seconds < RESOLUTION {
+            true => left,
+            false => self.seconds - self.clock.seconds(),
+        }
     }
 }
 

@@ -96,7 +96,31 @@ impl Rank {
         tolerance: f64,
         look: &mut dyn FnMut() -> Result<(), E>,
     ) -> Result<Self, E> {
-        let mut l: Vec<Vec<f64>> = rows.into_iter().map(<[f64]>::to_vec).collect();
+        Self::of_rows_while(
+            rows.into_iter().map(<[f64]>::to_vec).collect(),
+            n,
+            tolerance,
+            look,
+        )
+    }
+
+    /// Decides the rank as [`Rank::of`] does, of rows that nobody else needs.
+    pub(crate) fn of_rows(rows: Vec<Vec<f64>>, n: usize, tolerance: f64) -> Self {
+        let Ok(rank) = Self::of_rows_while(rows, n, tolerance, &mut goes_on);
+        rank
+    }
+
+    /// The same, asking `look` as [`Rank::of_while`] does.
+    ///
+    /// # Errors
+    /// The answer of `look`.
+    pub(crate) fn of_rows_while<E>(
+        rows: Vec<Vec<f64>>,
+        n: usize,
+        tolerance: f64,
+        look: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let mut l = rows;
         let of_row = |row: &Vec<f64>| norm(&row[span_from(row, 0, n)]);
         let mut length: Vec<f64> = l.iter().map(of_row).collect();
         let longest = length
@@ -138,7 +162,8 @@ impl Rank {
         // the columns that each row lies between, and its part outside the rows chosen so far
         let mut spans = Spans::new(l.iter().map(|row| span_from(row, 0, n)).collect(), n);
         let open = l[..leading].iter().zip(&spans.of_row);
-        let mut parts = Parts::new(open.map(|(row, span)| norm(&row[span.clone()])).collect());
+        let mut parts = Parts::new(open.map(|(row, span)| norm(&row[span.clone()])));
+        let mut met = Vec::new();
         while chosen.len() < l.len() {
             let k = chosen.len();
             let largest = parts.largest();
@@ -157,7 +182,8 @@ impl Rank {
             let v = reflection(&l[pivot], k, end);
             reflect(&v, &mut l[pivot]);
             let others = v.get(1).map_or(n, |e| e.0)..v.last().map_or(0, |e| e.0 + 1);
-            for i in spans.take_met(k, &others) {
+            spans.take_met(k, &others, &mut met);
+            for i in met.drain(..) {
                 let row = &mut l[i];
                 if reflect(&v, row) || row[k] != 0.0 {
                     let end = spans.of_row[i].end.max(others.end);
@@ -367,15 +393,21 @@ struct Spans {
     of_row: Vec<Range<usize>>,
     /// whether a row has not been chosen, by row
     is_open: Vec<bool>,
-    /// open rows whose span begins at a column   (n + 1)
+    /// open rows whose span begins at a column, where there are many   (n + 1)
     starting_at: Vec<Vec<usize>>,
 }
 
+/// Number of rows up to which all of them are looked at for each pivot.
+const FEW_ROWS: usize = 16;
+
 impl Spans {
     fn new(of_row: Vec<Range<usize>>, n: usize) -> Self {
-        let mut starting_at = vec![Vec::new(); n + 1];
-        for (i, span) in of_row.iter().enumerate() {
-            starting_at[span.start].push(i);
+        let mut starting_at = Vec::new();
+        if of_row.len() > FEW_ROWS {
+            starting_at.resize_with(n + 1, Vec::new);
+            for (i, span) in of_row.iter().enumerate() {
+                starting_at[span.start].push(i);
+            }
         }
         Self {
             is_open: vec![true; of_row.len()],
@@ -387,27 +419,33 @@ impl Spans {
     /// Takes a row out for good.
     fn close(&mut self, row: usize) {
         self.is_open[row] = false;
-        self.starting_at[self.of_row[row].start].retain(|&i| i != row);
+        if let Some(starting) = self.starting_at.get_mut(self.of_row[row].start) {
+            starting.retain(|&i| i != row);
+        }
     }
 
     /// Takes out the open rows that begin at column `k`, before which none has anything, or have
-    /// something between `others`.
-    fn take_met(&mut self, k: usize, others: &Range<usize>) -> Vec<usize> {
-        let mut met = Vec::new();
+    /// something between `others`: into `met`.
+    fn take_met(&mut self, k: usize, others: &Range<usize>, met: &mut Vec<usize>) {
+        let meets = |span: &Range<usize>| {
+            span.start == k || span.start < others.end && others.start < span.end
+        };
+        if self.starting_at.is_empty() {
+            let is_met = |&i: &usize| self.is_open[i] && meets(&self.of_row[i]);
+            met.extend((0..self.of_row.len()).filter(is_met));
+            return;
+        }
         for column in k..others.end.max(k + 1) {
-            let of_row = &self.of_row;
-            let is_met = |i: &mut usize| {
-                let span = &of_row[*i];
-                column == k || span.start < others.end && others.start < span.end
-            };
+            let is_met = |i: &mut usize| meets(&self.of_row[*i]);
             met.extend(self.starting_at[column].extract_if(.., is_met));
         }
-        met
     }
 
     /// Puts a row back that was taken out.
     fn put_back(&mut self, row: usize) {
-        self.starting_at[self.of_row[row].start].push(row);
+        if let Some(starting) = self.starting_at.get_mut(self.of_row[row].start) {
+            starting.push(row);
+        }
     }
 }
 
@@ -420,9 +458,10 @@ struct Parts {
 }
 
 impl Parts {
-    fn new(parts: Vec<f64>) -> Self {
+    fn new(parts: impl ExactSizeIterator<Item = f64>) -> Self {
         let n_leaves = parts.len().next_power_of_two();
-        let mut tree = vec![f64::NEG_INFINITY; n_leaves];
+        let mut tree = Vec::with_capacity(2 * n_leaves);
+        tree.resize(n_leaves, f64::NEG_INFINITY);
         tree.extend(parts);
         tree.resize(2 * n_leaves, f64::NEG_INFINITY);
         for j in (1..n_leaves).rev() {

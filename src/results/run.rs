@@ -180,6 +180,8 @@ pub(super) fn catch_up<T: Clone>(list: &mut Vec<T>, longer: &[T]) {
     list.extend_from_slice(&longer[list.len()..]);
 }
 
+/// Numbers for which room is made ahead, at most.
+const MOST_RESERVED: usize = 1 << 20;
 /// End of the name of a column of bars of error.
 const BAR: char = '±';
 
@@ -255,7 +257,9 @@ impl Run {
     pub(crate) fn push_block(&mut self, block: &[f64], width: usize) {
         let n_rows = block.len() / width;
         for (column, index) in self.columns.iter_mut().zip(0..) {
-            if index < width {
+            if n_rows == 1 && index < width {
+                column.values.push(block[index]);
+            } else if index < width {
                 let values = block.iter().skip(index).step_by(width);
                 column.values.extend(values);
             } else {
@@ -264,10 +268,14 @@ impl Run {
             }
         }
     }
-    /// Makes room for further rows.
-    pub(crate) fn reserve(&mut self, n_rows: usize) {
+    /// Makes room for further rows, and at once for those that are known to follow later.
+    pub(crate) fn reserve(&mut self, n_rows: usize, more: usize) {
+        let most = MOST_RESERVED / self.columns.len().max(1);
         for column in &mut self.columns {
-            column.values.reserve(n_rows);
+            let values = &mut column.values;
+            if values.capacity() - values.len() < n_rows {
+                values.reserve(n_rows + more.min(most));
+            }
         }
     }
     /// Begins a sequence at the next row; it is named by its kind and number.
@@ -335,6 +343,10 @@ impl Run {
             return;
         }
         for (own, more) in self.columns.iter_mut().zip(&later.columns) {
+            if own.values.capacity() < more.values.len() {
+                let room = more.values.capacity() - own.values.len();
+                own.values.reserve_exact(room);
+            }
             catch_up(&mut own.values, &more.values);
         }
         // the last one may have grown
@@ -351,10 +363,10 @@ impl Run {
             (lists, run.table.len(), run.released, run.has_phases)
         };
         let held = self.columns.first().map_or(0, |c| c.values.len());
-        let last = |run: &Run| -> Option<Vec<u64>> {
-            let row = held.checked_sub(1)?;
-            let values = run.columns.iter().map(|c| c.values.get(row));
-            values.map(|x| Some(x?.to_bits())).collect()
+        let has_last = |row: usize| {
+            let bits = |column: &Column| column.values.get(row).map(|x| x.to_bits());
+            let mut pairs = self.columns.iter().zip(&later.columns);
+            pairs.all(|(own, more)| bits(own).is_some_and(|own| Some(own) == bits(more)))
         };
         let lists = [self.sequences.len(), self.log.len()];
         let later_lists = [later.sequences.len(), later.log.len()];
@@ -364,7 +376,7 @@ impl Run {
                 .iter()
                 .zip(&later_lists)
                 .all(|(own, more)| own <= more)
-            && last(self).is_some_and(|own| Some(own) == last(later))
+            && has_last(held - 1)
     }
     /// Returns the number of rows, those that are no longer held included.
     pub fn rows(&self) -> usize {

@@ -496,48 +496,71 @@ fn entity_of(name: String, word: &str, id: ElementId) -> Entity {
     }
 }
 
-/// Evaluates the columns at each row of numbers and appends them to the run.
-pub fn append(run: &mut Run, program: &Program, rows: &[Vec<f64>]) {
-    append_means(run, program, rows, |_| None);
-}
-
 /// Rows that are evaluated before they go to their columns: of each column a line of the cache or
 /// more, and all of them together fit the caches.
 const ROWS_OF_BLOCK: usize = 32;
 
-/// Appends the columns as [`append`] does; `branches`: the numbers on the branches between which
-/// the motion stays at the row of an index, and the part of each in the mean that is what happens.
-pub fn append_means<'a>(
+/// The numbers that columns are evaluated with, from one simulation to the next.
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
+    work: Work,
+    /// rows that go to their columns together
+    block: Vec<f64>,
+    /// the mean over branches, the values on one of them, and which of these differ from the row's
+    mean: Vec<f64>,
+    other: Vec<f64>,
+    changes: Vec<bool>,
+}
+
+/// Evaluates the columns at each row of numbers and appends them to the run.
+pub fn append(run: &mut Run, program: &Program, rows: &[Vec<f64>]) {
+    append_with(run, (program, &mut Scratch::default()), (rows, 0), |_| None);
+}
+
+/// Appends the columns as [`append`] does; `more`: rows that are known to follow later; `branches`:
+/// the numbers on the branches between which the motion stays at the row of an index, and the part
+/// of each in the mean that is what happens.
+pub(super) fn append_with<'a>(
     run: &mut Run,
-    program: &Program,
-    rows: &[Vec<f64>],
+    (program, scratch): (&Program, &mut Scratch),
+    (rows, more): (&[Vec<f64>], usize),
     branches: impl Fn(usize) -> Option<&'a Vec<(f64, Vec<f64>)>>,
 ) {
-    let mut work = Work::default();
     let width = program.n_outputs() + 1;
-    let (mut mean, mut other) = (vec![0.0; width - 1], vec![0.0; width - 1]);
-    let mut changes = vec![false; other.len()];
-    // rows that go to their columns together
-    let mut block = vec![0.0; width * rows.len().min(ROWS_OF_BLOCK)];
+    let room = width * rows.len().min(ROWS_OF_BLOCK);
+    if scratch.block.len() < room {
+        scratch.block.resize(room, 0.0);
+    }
     let mut n_rows = 0;
-    program.expect_runs(rows.len());
-    run.reserve(rows.len());
+    program.expect_runs(rows.len() + more);
+    run.reserve(rows.len(), more);
     for (k, row) in rows.iter().enumerate() {
-        let values = &mut block[n_rows * width..][..width];
+        let values = &mut scratch.block[n_rows * width..][..width];
         values[0] = row[Layout::TIME];
-        program.run(row, &mut work, &mut values[1..]);
+        program.run(row, &mut scratch.work, &mut values[1..]);
         if let Some(branches) = branches(k) {
-            mean.fill(0.0);
-            changes.fill(false);
+            let Scratch {
+                work,
+                mean,
+                other,
+                changes,
+                ..
+            } = scratch;
+            mean.clear();
+            mean.resize(width - 1, 0.0);
+            changes.clear();
+            changes.resize(width - 1, false);
+            other.resize(width - 1, 0.0);
+            let values = &mut scratch.block[n_rows * width + 1..][..width - 1];
             for (part, row) in branches {
-                program.run(row, &mut work, &mut other);
-                let all = mean.iter_mut().zip(&mut changes).zip(&other);
-                for (((mean, changes), other), value) in all.zip(&values[1..]) {
+                program.run(row, work, other);
+                let all = mean.iter_mut().zip(&mut *changes).zip(&*other);
+                for (((mean, changes), other), value) in all.zip(&*values) {
                     *mean += part * other;
                     *changes |= other != value;
                 }
             }
-            let all = values[1..].iter_mut().zip(&mean).zip(&changes);
+            let all = values.iter_mut().zip(&*mean).zip(&*changes);
             for ((value, mean), _) in
                 all.filter(|((_, mean), changes)| **changes && mean.is_finite())
             {
@@ -545,10 +568,11 @@ pub fn append_means<'a>(
             }
         }
         // a zero has no sign that would mean something
+        let values = &mut scratch.block[n_rows * width..][..width];
         values.iter_mut().for_each(|value| *value += 0.0);
         n_rows += 1;
         if n_rows == ROWS_OF_BLOCK || k + 1 == rows.len() {
-            run.push_block(&block[..n_rows * width], width);
+            run.push_block(&scratch.block[..n_rows * width], width);
             n_rows = 0;
         }
     }

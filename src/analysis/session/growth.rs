@@ -82,7 +82,10 @@ impl Looks {
         }
         let (first, last) = (self.rows.first()?, &self.last);
         let looked = || self.rows.iter().chain([last]).map(Vec::as_slice);
-        let speeds_grow = speeds_grow(&system.scene.layout, looked(), [first, last]);
+        // what nobody has looked at in some quarter does not grow there
+        let is_seen = |q: usize| looked().any(|row| quarter(row, [first, last]) == q);
+        let is_seen = (1..4).all(is_seen);
+        let speeds_grow = is_seen && speeds_grow(&system.scene.layout, looked(), [first, last]);
         let grown = speeds_grow.then(|| of(system, looked(), [first, last]));
         (grown.flatten()).or_else(|| stops.then(|| self.burst(system))?)
     }

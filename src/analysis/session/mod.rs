@@ -166,6 +166,12 @@ pub struct Session {
     halted: bool,
     /// columns that have gaps
     gaps: Gaps,
+    /// what columns are evaluated with
+    scratch: columns::Scratch,
+    /// rows that the commands to come will add, as far as they say
+    rows_to_come: usize,
+    /// whether commands will have equations recorded that are much like those of before
+    records_again: bool,
     /// takes rows while simulations go on
     receiver: Option<Receiver>,
     /// the processor time that may be used
@@ -242,6 +248,9 @@ impl Session {
             is_last: false,
             halted: false,
             gaps: Gaps::default(),
+            scratch: columns::Scratch::default(),
+            rows_to_come: 0,
+            records_again: false,
             receiver: None,
             limit,
             ended_early: None,

@@ -60,6 +60,8 @@ pub(super) struct Gaps {
     has_value: Vec<bool>,
     /// when it first had none in the present simulation
     first: Vec<Option<f64>>,
+    /// whether any has had none there
+    is_any: bool,
     /// columns that have been told
     told: BTreeSet<String>,
 }
@@ -76,6 +78,7 @@ impl Gaps {
             // without a way out of the loop, so that it takes several numbers at once
             let has_gap = new.iter().fold(false, |any, x| any | !x.is_finite());
             if has_gap {
+                self.is_any = true;
                 let gap = new.iter().position(|x| !x.is_finite());
                 *first = first.or(gap.map(|gap| run.value(0, from + gap)));
             }
@@ -86,6 +89,9 @@ impl Gaps {
     /// Returns the columns that have gaps in the present simulation, and ends it. `is_off` tells
     /// which columns belong to something that is switched off.
     fn take(&mut self, run: &Run, is_off: impl Fn(usize) -> bool) -> Vec<(String, f64)> {
+        if !std::mem::take(&mut self.is_any) {
+            return Vec::new();
+        }
         let seen = self.has_value.iter().zip(&mut self.first);
         let gaps = run.columns.iter().enumerate().zip(seen);
         let gaps = gaps.filter_map(|((k, column), (has_value, first))| {
@@ -124,7 +130,8 @@ impl Session {
 
     /// Adds rows to the last sequence.
     pub(super) fn more_rows(&mut self, program: &Program, rows: &[Vec<f64>]) {
-        columns::append(&mut self.run, program, rows);
+        let columns = (program, &mut self.scratch);
+        columns::append_with(&mut self.run, columns, (rows, 0), |_| None);
         self.hand_over(rows.len());
     }
 
@@ -189,7 +196,8 @@ impl Session {
             let (from, released) = (seen.rows, trajectory.released);
             let rows = &trajectory.rows[from - released..end - released];
             let means = |k: usize| trajectory.means.get(&(from + k));
-            columns::append_means(&mut self.run, &seen.program, rows, means);
+            let (columns, more) = ((&seen.program, &mut self.scratch), self.rows_to_come);
+            columns::append_with(&mut self.run, columns, (rows, more), means);
             let chosen = trajectory.selections.get(..seen.selections);
             let chosen = chosen.and_then(|c| c.last()).map(|c| &c.2[..]);
             let active = chosen.unwrap_or(&seen.active);

@@ -110,7 +110,10 @@ pub fn obey(
     });
     session.will_change(changed);
     session.run.has_phases |= has_phases(steps);
+    session.records_again = record_again(steps);
+    session.rows_to_come = steps.iter().map(rows).fold(0, usize::saturating_add);
     for (k, step) in steps.iter().enumerate() {
+        session.rows_to_come = session.rows_to_come.saturating_sub(rows(step));
         session.run.log.push(Event::Command(step.text.clone()));
         let located = |d: Diagnostic| located(d, step);
         match &step.command {
@@ -154,6 +157,32 @@ pub fn obey(
         }
     }
     Ok(status)
+}
+
+/// Returns the output steps of a command, as far as it says how many there are.
+fn rows(step: &Step) -> usize {
+    match &step.command {
+        Command::Simulate(simulate) => simulate.steps.map_or(1, |steps| steps.max(1) as usize),
+        _ => 0,
+    }
+}
+
+/// Returns whether simulations will have equations recorded that are much like those of before: of
+/// another kind, or with elements switched on or off between them.
+fn record_again(steps: &[Step]) -> bool {
+    let mut before: Option<SimulationKind> = None;
+    let mut is_switched = false;
+    steps.iter().any(|step| match &step.command {
+        Command::Simulate(simulate) => {
+            let last = before.replace(simulate.kind);
+            last.is_some_and(|last| is_switched || last != simulate.kind)
+        }
+        Command::Activate { .. } => {
+            is_switched = before.is_some();
+            false
+        }
+        _ => false,
+    })
 }
 
 /// Returns whether some simulations look for rest and others do not: their rows may share a time.
@@ -247,5 +276,45 @@ impl Session {
         let matrices = command.state_matrices || !command.eigensolution;
         self.linear.push((command.file.clone(), matrices, found));
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::session::Options;
+    use crate::analysis::watch::Unwatched;
+    use crate::dataset::command::Script;
+    use crate::dataset::manual;
+    use crate::model::Model;
+
+    #[test]
+    fn simulations_that_are_known_beforehand_have_the_bits_of_others() {
+        let commands = "FILE/MODEL=m\nSIMULATE/INITIAL_CONDITIONS\n\
+            SIMULATE/TRANSIENT, END=0.004, STEPS=2\nSIMULATE/TRANSIENT, END=0.03, STEPS=70\n";
+        let steps = Script::from_text(commands).expect("commands").steps;
+        assert!(record_again(&steps) && !record_again(&steps[1..]));
+        let mut n_compared = 0;
+        for example in manual::examples() {
+            let Ok(model) = Model::from_text(example.dataset) else {
+                continue;
+            };
+            let run = |parts: &[&[Step]]| {
+                let mut session = Session::new(model.clone(), "m", Options::default());
+                let mut obey =
+                    |steps: &&[Step]| obey(&mut session, steps, |_, _| (), &mut Unwatched).is_ok();
+                let obeyed = parts.iter().all(&mut obey);
+                let values = session.run.columns.iter().flat_map(|c| &c.values);
+                // numbers that are none have no sign
+                let plain = |x: &f64| if x.is_nan() { f64::NAN } else { *x };
+                let bits = values.map(|x| plain(x).to_bits());
+                (obeyed, bits.collect::<Vec<u64>>())
+            };
+            let (together, one_by_one) =
+                (run(&[&steps]), run(&steps.chunks(1).collect::<Vec<_>>()));
+            assert_eq!(together, one_by_one, "{}", example.name);
+            n_compared += together.1.len();
+        }
+        assert!(n_compared > 4000, "{n_compared}");
     }
 }

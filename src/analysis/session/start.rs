@@ -139,7 +139,13 @@ impl Session {
     ) -> Result<System, Vec<Diagnostic>> {
         let mode = start.mode;
         let phase = Phase::begin();
+        let looks = self.records_again && !self.options.keep_start;
+        let looking = looks.then(|| {
+            self.structures.next_generation();
+            self.structures.look()
+        });
         let mut system = self.system(start, v, watch)?;
+        drop(looking);
         self.leap = self.leap_of(&mut system, mode);
         let is_kept = self.carried.is_none() && self.options.keep_start && inputs.is_empty();
         if is_kept && mode == DYNAMIC {

@@ -125,7 +125,10 @@ impl Session {
         }
         let mut run = Run::new("late", "", self.run.units.clone());
         run.add_column(name, "");
-        columns::append_means(&mut run, &program, &stretch.rows, |k| stretch.means.get(&k));
+        let columns = (&program, &mut self.scratch);
+        columns::append_with(&mut run, columns, (&stretch.rows, 0), |k| {
+            stretch.means.get(&k)
+        });
         Ok(run
             .columns
             .pop()

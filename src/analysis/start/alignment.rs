@@ -176,7 +176,7 @@ pub(super) fn explain(
         .collect();
     let dense = |&r: &usize| {
         let mut row = vec![0.0; w.len()];
-        for &(v, x) in &at.row(r).gradient {
+        for (v, x) in at.row_at_rest(r).1 {
             row[v] += x * w[v].sqrt() / scene.row_scale(r);
         }
         row
@@ -268,7 +268,7 @@ impl<'s> Search<'s> {
                 if is_length(scene, r) {
                     one[r] = size;
                 }
-                structure[r] = at.row(r).gradient.clone();
+                structure[r] = at.row_at_rest(r).1;
                 for (v, _) in &structure[r] {
                     unit[*v] = unit[*v].max(size);
                 }
@@ -309,13 +309,13 @@ impl<'s> Search<'s> {
                 found.gradients.push(Vec::new());
                 continue;
             }
-            let row = at.row(r);
-            let mut entries = assemble::merged(&row.gradient);
+            let (value, row) = at.row_at_rest(r);
+            let mut entries = assemble::merged(row);
             entries
                 .iter_mut()
                 .for_each(|(v, x)| *x *= self.unit[*v] / one);
             entries.retain(|e| e.1.abs() > ROUNDING);
-            found.values.push(row.value / one);
+            found.values.push(value / one);
             found.gradients.push(entries);
         }
         found

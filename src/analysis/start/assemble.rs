@@ -96,7 +96,7 @@ fn hold(
     q: &[f64],
     x: &[f64],
 ) -> Vec<Warning> {
-    let (shown, _, _) = rows_at(scene.within(configuration), t, q, x);
+    let (shown, _) = rows_at_rest(scene.within(configuration), t, q, x);
     let mut told = Vec::new();
     begin_motions(scene, configuration, t, q, x);
     let constants = configuration.sums.iter_mut();
@@ -162,8 +162,27 @@ fn begin_motions(scene: &Scene, configuration: &mut Configuration, t: f64, q: &[
     }
 }
 
-/// Evaluates values, gradients and drifts of all rows at an instant: g (m), rows of G (m × n_v),
-/// ġ₀ (m); zero for those that are left out within tolerance.
+/// Evaluates values and gradients of all rows at an instant: g (m), rows of G (m × n_v); zero for
+/// those that are left out within tolerance.
+pub(in crate::analysis) fn rows_at_rest(
+    scene: Configured<'_>,
+    t: f64,
+    q: &[f64],
+    x: &[f64],
+) -> (DVector<f64>, Vec<SparseRow>) {
+    let l = scene.layout;
+    let at = Equations::new(scene, &numbers(scene, t, q, &vec![0.0; l.n_v], x));
+    let m = scene.rows.len();
+    let (mut g, mut gradient) = (DVector::zeros(m), vec![Vec::new(); m]);
+    for r in (0..m).filter(|&r| !scene.configuration.is_loose(r)) {
+        let (value, row) = at.row_at_rest(r);
+        g[r] = value;
+        gradient[r] = merged(row);
+    }
+    (g, gradient)
+}
+
+/// The same, with the drifts ġ₀ (m).
 pub fn rows_at(
     scene: Configured<'_>,
     t: f64,
@@ -179,20 +198,20 @@ pub fn rows_at(
         let row = at.row(r);
         g[r] = row.value;
         drift[r] = row.drift;
-        gradient[r] = merged(&row.gradient);
+        gradient[r] = merged(row.gradient.clone());
     }
     (g, gradient, drift)
 }
 
 /// Adds up what stands in a row for the same velocity.
-pub(super) fn merged(entries: &[(usize, f64)]) -> SparseRow {
-    let mut row: SparseRow = Vec::with_capacity(entries.len());
-    for &(v, x) in entries {
-        match row.last_mut() {
-            Some(last) if last.0 == v => last.1 += x,
-            _ => row.push((v, x)),
+pub(super) fn merged(mut row: SparseRow) -> SparseRow {
+    row.dedup_by(|next, last| {
+        let is_same = next.0 == last.0;
+        if is_same {
+            last.1 += next.1;
         }
-    }
+        is_same
+    });
     row
 }
 
@@ -280,7 +299,7 @@ pub(in crate::analysis) fn least_change(
     for part in parts(a, w.len()) {
         let rows = scaled_part(&part, a, w);
         let n = part.columns.len();
-        let rank = Rank::of(rows.iter().map(Vec::as_slice), n, 1e-9);
+        let rank = Rank::of_rows(rows, n, 1e-9);
         let right: Vec<f64> = part.rows.iter().map(|&r| b[r]).collect();
         let mut x = vec![0.0; n];
         rank.least_norm(&right, &mut x);
@@ -340,15 +359,15 @@ pub(super) fn close_while<E>(
         let here = numbers(scene.within(configuration), t, q, &still, x);
         cams::track(scene, configuration, &here);
         let configured = scene.within(configuration);
-        let (mut g, mut gradient, drift) = rows_at(configured, t, q, x);
+        let (mut g, mut gradient) = rows_at_rest(configured, t, q, x);
         for r in (0..g.len()).filter(|&r| ignored(configured, r)) {
             g[r] = 0.0;
             gradient[r].clear();
         }
         clear_idle(scene, &g, &mut gradient);
-        (g, gradient, drift)
+        (g, gradient)
     };
-    let (mut g, mut gradient, _) = rows_at(configuration, q);
+    let (mut g, mut gradient) = rows_at(configuration, q);
     let mut size = worst(&g);
     let mut iterations = 0;
     while size > 1e-13 && iterations < 100 {
@@ -365,7 +384,7 @@ pub(super) fn close_while<E>(
             let mut trial = q.to_vec();
             mover.displace(&mut trial, (&step * damping).as_slice());
             let contacts = configuration.contacts.clone();
-            let (g1, gradient1, _) = rows_at(configuration, &trial);
+            let (g1, gradient1) = rows_at(configuration, &trial);
             if g1.norm() < g.norm() {
                 q.copy_from_slice(&trial);
                 (g, gradient, better) = (g1, gradient1, true);
@@ -445,7 +464,7 @@ pub(super) fn positions_while(
         .warnings
         .extend(aligned.into_iter().map(Warning::from));
     look()?;
-    let (_, gradient, _) = rows_at(here, t, q, x);
+    let (_, gradient) = rows_at_rest(here, t, q, x);
     let n = scene.layout.n_v;
     look()?;
     let (independent, dependent) = rank_of_rows(scene, &gradient, &[], look)?;
@@ -570,7 +589,7 @@ pub(super) fn rank_of_rows<E>(
             }
         }
         let n = part.columns.len();
-        let rank = Rank::of_while(rows.iter().map(Vec::as_slice), n, DEPENDENT, look)?;
+        let rank = Rank::of_rows_while(rows, n, DEPENDENT, look)?;
         independent.extend(rank.independent().into_iter().map(|k| part.rows[k]));
         redundant.extend(rank.dependent().into_iter().map(|d| {
             let mut combination: Vec<(usize, f64)> = d
@@ -603,4 +622,49 @@ pub fn null_space(a: &DMatrix<f64>) -> DMatrix<f64> {
 pub(super) fn directions(rank: &Rank, n: usize) -> DMatrix<f64> {
     let free = rank.free_directions();
     DMatrix::from_fn(n, free.len(), |i, j| free[j][i])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::manual;
+    use crate::model::Model;
+    use crate::scene::build::Options;
+
+    #[test]
+    fn rows_without_drifts_are_those_with_drifts_to_the_bit() {
+        let mut n_compared = 0;
+        // every joint as rows
+        let options = Options {
+            cut_all: true,
+            ..Options::default()
+        };
+        for example in manual::examples() {
+            let Ok(model) = Model::from_text(example.dataset) else {
+                continue;
+            };
+            let Ok(scene) = Scene::compile(&model, &options) else {
+                continue;
+            };
+            let (configuration, x) = (Configuration::new(&scene), vec![0.0; scene.layout.n_x]);
+            let here = scene.within(&configuration);
+            for k in 0..4 {
+                let moved = |(j, q): (usize, &f64)| q + 0.01 * f64::from(k) * (j as f64).cos();
+                let q: Vec<f64> = scene.initial_q.iter().enumerate().map(moved).collect();
+                let (g, gradient) = rows_at_rest(here, 0.1, &q, &x);
+                let (same_g, same_gradient, _) = rows_at(here, 0.1, &q, &x);
+                let bits = |g: &DVector<f64>, gradient: &[SparseRow]| -> Vec<(usize, u64)> {
+                    let values = g.iter().copied().enumerate();
+                    let all = values.chain(gradient.iter().flatten().copied());
+                    // numbers that are none have no sign
+                    let plain = |x: f64| if x.is_nan() { f64::NAN } else { x };
+                    all.map(|(place, x)| (place, plain(x).to_bits())).collect()
+                };
+                let (own, same) = (bits(&g, &gradient), bits(&same_g, &same_gradient));
+                assert_eq!(own, same, "{} {k}", example.name);
+                n_compared += gradient.iter().flatten().count();
+            }
+        }
+        assert!(n_compared > 100, "{n_compared}");
+    }
 }

@@ -17,7 +17,7 @@
 //! there the rows themselves are closed. It is asked for only where the rows alone have failed or
 //! have led to an opposite.
 
-use crate::analysis::start::assemble::{least_change, merged, numbers, rows_at};
+use crate::analysis::start::assemble::{least_change, merged, numbers, rows_at_rest};
 use crate::analysis::start::placement::log;
 use crate::model::ElementId;
 use crate::physics::action::Action;
@@ -432,7 +432,7 @@ pub fn turn(
         let here = numbers(scene.within(configuration), t, q, &still, x);
         cams::track(scene, configuration, &here);
         let configured = scene.within(configuration);
-        let (mut g, mut gradient, _) = rows_at(configured, t, q, x);
+        let (mut g, mut gradient) = rows_at_rest(configured, t, q, x);
         for r in (0..g.len()).filter(|&r| turns_or_held(configured, r)) {
             g[r] = 0.0;
             gradient[r].clear();
@@ -453,7 +453,7 @@ pub fn turn(
         let mut a = gradient;
         let mut b = (-g).insert_rows(m, wanted.len(), 0.0);
         for (k, &((i, j), axis, by)) in wanted.iter().enumerate() {
-            a.push(merged(&at.gradient_of(&against(i, j, axis))));
+            a.push(merged(at.gradient_of(&against(i, j, axis))));
             b[m + k] = by;
         }
         // a step

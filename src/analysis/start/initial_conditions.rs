@@ -14,7 +14,7 @@
 //! have conditions of joints and parts: kinematics and statics find their own configuration. Those
 //! of contacts count always: they choose among the ways in which the parts can be put together.
 
-use crate::analysis::start::assemble::{self, least_change, rows_at};
+use crate::analysis::start::assemble::{self, least_change, rows_at_rest};
 use crate::analysis::warning::ConditionWarning;
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
@@ -334,7 +334,7 @@ pub fn approach(
         cams::track(scene, configuration, &here);
         cams::place(scene, configuration, &starts, &here);
         let configured = scene.within(configuration);
-        let (mut g, mut gradient, _) = rows_at(configured, t, q, x);
+        let (mut g, mut gradient) = rows_at_rest(configured, t, q, x);
         for r in (0..g.len()).filter(|&r| asked(configured, r)) {
             g[r] = 0.0;
             gradient[r].clear();
@@ -354,7 +354,7 @@ pub fn approach(
         for (_, slopes) in &places {
             let mut slopes = slopes.clone();
             slopes.sort_by_key(|e| e.0);
-            a.push(assemble::merged(&slopes));
+            a.push(assemble::merged(slopes));
         }
         let all = g
             .iter()

@@ -76,7 +76,7 @@ pub(super) fn look(
             continue;
         };
         go_on()?;
-        let (_, gradient, _) = assemble::rows_at(scene.within(&there), t, &place.q, x);
+        let (_, gradient) = assemble::rows_at_rest(scene.within(&there), t, &place.q, x);
         let (independent, redundant) = assemble::rank_of_rows(&scene, &gradient, here, go_on)?;
         if best
             .as_ref()
@@ -116,7 +116,7 @@ impl<'s> Surroundings<'s> {
     /// Finds what is free at a position; `None`: nothing is, and nothing is driven.
     pub fn new(scene: Configured<'s>, t: f64, q: &'s [f64], x: &'s [f64]) -> Option<Self> {
         let w = weights(&scene);
-        let (_, gradient, _) = assemble::rows_at(scene, t, q, x);
+        let (_, gradient) = assemble::rows_at_rest(scene, t, q, x);
         let free = free_directions(&gradient, &w);
         let at = assemble::numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
         let at = Equations::new(scene, &at);
@@ -192,7 +192,7 @@ fn free_directions(gradient: &[SparseRow], w: &[f64]) -> Vec<SparseRow> {
     for part in assemble::parts(gradient, w.len()) {
         let rows = assemble::scaled_part(&part, gradient, w);
         let n = part.columns.len();
-        let rank = Rank::of(rows.iter().map(Vec::as_slice), n, assemble::DEPENDENT);
+        let rank = Rank::of_rows(rows, n, assemble::DEPENDENT);
         let places = |d: Vec<f64>| part.columns.iter().copied().zip(d).collect();
         free.extend(rank.free_directions().into_iter().map(places));
         part.columns.iter().for_each(|&v| held[v] = true);

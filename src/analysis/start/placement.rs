@@ -80,7 +80,7 @@ pub fn settle(
         let Some(distance) = Distance::at(scene, model, t, &here, x, &asked) else {
             return false;
         };
-        let (mut g, mut gradient, _) = assemble::rows_at(scene, t, &here, x);
+        let (mut g, mut gradient) = assemble::rows_at_rest(scene, t, &here, x);
         for r in (0..g.len()).filter(|&r| scene.is_held(r)) {
             g[r] = 0.0;
             gradient[r].clear();

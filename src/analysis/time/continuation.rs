@@ -568,7 +568,7 @@ fn read_by_rows(system: &System, values: &[f64]) -> Vec<bool> {
     let displacements: Vec<f64> = values.iter().step_by(2).copied().collect();
     let rows = |displacements: &[f64]| {
         let there = scene.configuration.with_motions_at(displacements);
-        crate::analysis::start::assemble::rows_at(scene.within(&there), t, q, x)
+        crate::analysis::start::assemble::rows_at_rest(scene.within(&there), t, q, x)
     };
     let still = rows(&displacements);
     let read = |m: usize| {

@@ -135,7 +135,7 @@ fn fits(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, c: usize, t
     };
     let ranked = |configuration: &Configuration, numbers: &[f64]| {
         let l = changed.layout;
-        let (_, gradient, _) = assemble::rows_at(
+        let (_, gradient) = assemble::rows_at_rest(
             changed.within(configuration),
             numbers[Layout::TIME],
             &numbers[l.q()],

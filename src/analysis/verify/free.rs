@@ -71,7 +71,7 @@ impl<'a> Directions<'a> {
     /// Finds all of them.
     pub fn of(scene: Configured<'a>, model: &'a Model, t: f64, q: &'a [f64], x: &'a [f64]) -> Self {
         let w = weights(&scene);
-        let (_, gradient, _) = assemble::rows_at(scene, t, q, x);
+        let (_, gradient) = assemble::rows_at_rest(scene, t, q, x);
         let rows = assemble::scaled_rows(&gradient, &w);
         let rank = Rank::of(rows.iter().map(Vec::as_slice), w.len(), assemble::DEPENDENT);
         let mut owner = vec![0; w.len()];

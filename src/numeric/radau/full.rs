@@ -78,14 +78,29 @@ impl Full {
         if begins || !self.link(jacobian) {
             // entries that were zero before are here now
             let eliminated = match begins {
-                true if n > DENSE_LIMIT => eliminable(jacobian, n, &mut (0..n)),
-                true => Vec::new(),
+                true => first_choice(jacobian, n),
                 false => eliminable(jacobian, n, &mut self.eliminated.iter().copied()),
             };
             self.choose(eliminated);
             self.link(jacobian);
         }
         self.multiply(jacobian);
+    }
+
+    /// Becomes what systems of this Jacobian are that were left, factors included, if systems that
+    /// begin with it would be the same; returns whether it did.
+    pub fn take(&mut self, left: &Self, jacobian: &[f64]) -> bool {
+        if left.kept.is_empty() || first_choice(jacobian, self.n) != left.eliminated {
+            return false;
+        }
+        // whose room says how many there may be
+        let mut links = Vec::with_capacity(left.links.capacity());
+        links.extend_from_slice(&left.links);
+        *self = Self {
+            links,
+            ..left.clone()
+        };
+        true
     }
 
     /// Chooses the unknowns that are eliminated first.
@@ -249,6 +264,14 @@ fn add(sum: &mut [f64], column: &[f64], factor: f64) {
     }
 }
 
+/// Returns the unknowns that are eliminated first where systems begin with a Jacobian.
+fn first_choice(jacobian: &[f64], n: usize) -> Vec<usize> {
+    match n > DENSE_LIMIT {
+        true => eliminable(jacobian, n, &mut (0..n)),
+        false => Vec::new(),
+    }
+}
+
 /// Returns the unknowns among some that can be eliminated first, ascending.
 fn eliminable(jacobian: &[f64], n: usize, some: &mut dyn Iterator<Item = usize>) -> Vec<usize> {
     // in S already, or an entry of a row in S stands in the column
@@ -356,6 +379,39 @@ mod tests {
         let mut x = b.clone();
         full.solve(&mut x);
         assert!(residual(&jacobian, (&x, &vec![0.0; n]), (5.0, 0.0), &b) < 1e-12);
+    }
+
+    #[test]
+    fn factors_that_are_taken_are_those_that_would_be_made() {
+        let (half, mut draw) = (20, between_ones(7));
+        let n = 2 * half;
+        let bits = |full: &mut Full| {
+            let (mut x, mut re, mut im) = (vec![1.0; n], vec![0.5; n], vec![-2.0; n]);
+            full.solve(&mut x);
+            full.solve_complex(&mut re, &mut im);
+            let all = [x, re, im].concat();
+            all.iter().map(|x| x.to_bits()).collect::<Vec<u64>>()
+        };
+        let mut jacobian = second_order(half, 1.0, &mut draw);
+        let mut first = Full::new(n);
+        first.see(&jacobian);
+        first.factor(&jacobian, 5.0, 4.0, 3.0).expect("regular");
+        let mut taken = Full::new(n);
+        assert!(taken.take(&first, &jacobian));
+        assert_eq!(bits(&mut taken), bits(&mut first));
+        // an entry more: both go on alike, but systems that begin here choose otherwise
+        jacobian[2 + n * 2] = 0.5;
+        for full in [&mut first, &mut taken] {
+            full.see(&jacobian);
+            full.factor(&jacobian, 5.0, 4.0, 3.0).expect("regular");
+        }
+        assert_eq!(taken.eliminated, first.eliminated);
+        assert_eq!(bits(&mut taken), bits(&mut first));
+        jacobian[2 + n * 2] = 0.0;
+        first.see(&jacobian);
+        assert!(!Full::new(n).take(&first, &jacobian));
+        // nothing was left
+        assert!(!Full::new(n).take(&Full::new(n), &jacobian));
     }
 
     #[test]

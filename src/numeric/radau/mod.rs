@@ -51,6 +51,7 @@ use collocation::{
     ALPHA, BETA, Begin, Convergence, GAMMA, KEEP_JACOBIAN_RATE, Newton, Polynomial, Stages,
     solve_collocation_system,
 };
+use full::Full;
 use systems::Systems;
 
 /// Order of the method.
@@ -130,6 +131,8 @@ pub(super) struct Derivatives {
     jacobian: Vec<f64>,
     dfdt: Vec<f64>,
     freshness: Freshness,
+    /// full systems of this Jacobian with their factors; `None`: they are made anew
+    factored: Option<Box<Full>>,
 }
 
 impl Derivatives {
@@ -157,6 +160,7 @@ impl Derivatives {
                 h_factored,
                 h_evaluated,
             },
+            factored: None,
         })
     }
 }
@@ -693,11 +697,12 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
     }
 
     fn leave(&mut self) -> Option<Memory> {
-        let (jacobian, dfdt) = self.systems.leave();
+        let (jacobian, dfdt, factored) = self.systems.leave();
         let radau = Derivatives {
             jacobian,
             dfdt,
             freshness: self.freshness,
+            factored,
         };
         self.freshness.stale = true;
         self.advanced.then_some(Memory {
@@ -711,7 +716,11 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
         let Some(kept) = &memory.radau else { return };
         if self.systems.take(&kept.jacobian, &kept.dfdt) {
             self.freshness = kept.freshness;
-            // factors follow from the Jacobian and the step
+            if self.systems.take_factors(kept.factored.as_deref()) {
+                return;
+            }
+            // they follow from the Jacobian and the step
+            self.systems.begin();
             let h = kept.freshness.h_factored;
             self.freshness.stale |= h != 0.0 && self.factor(h).is_err();
         }

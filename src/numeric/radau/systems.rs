@@ -129,10 +129,15 @@ impl Systems {
         }
     }
 
-    /// Leaves the Jacobian and ∂f/∂t; nothing is left of them.
-    pub fn leave(&mut self) -> (Vec<f64>, Vec<f64>) {
+    /// Leaves the Jacobian, ∂f/∂t, and the factors of full systems; nothing stays here.
+    pub fn leave(&mut self) -> (Vec<f64>, Vec<f64>, Option<Box<Full>>) {
         let left = std::mem::replace(self, Systems::new(self.n));
-        (left.jacobian, left.dfdt)
+        let full = match left.kind {
+            Kind::Full(full) => Some(full),
+            // whose pivots are those of the first Jacobian
+            Kind::Sparse(_) => None,
+        };
+        (left.jacobian, left.dfdt, full)
     }
 
     /// Takes a Jacobian of the same shape, and ∂f/∂t; returns whether it is of that.
@@ -142,10 +147,23 @@ impl Systems {
         }
         self.jacobian.copy_from_slice(jacobian);
         self.dfdt.copy_from_slice(dfdt);
+        true
+    }
+
+    /// Takes the factors that were left with the Jacobian; returns whether they are those that
+    /// would be made of it.
+    pub fn take_factors(&mut self, left: Option<&Full>) -> bool {
+        let (Kind::Full(full), Some(left)) = (&mut self.kind, left) else {
+            return false;
+        };
+        full.take(left, &self.jacobian)
+    }
+
+    /// Takes note of a Jacobian without factors.
+    pub fn begin(&mut self) {
         if let Kind::Full(full) = &mut self.kind {
             full.see(&self.jacobian);
         }
-        true
     }
 
     /// Evaluates the Jacobian at `(t, y)`.

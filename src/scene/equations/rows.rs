@@ -53,9 +53,22 @@ impl<S: Scalar> Equations<'_, S> {
         (i, j): (usize, usize),
         drive: Option<Drive<Jet<S>>>,
     ) -> RowValue<S> {
+        let seeded = self.along_twists(law, (i, j), drive);
+        let [i_in_time, j_in_time] = self.both_in_time([i, j]);
+        let rates = law.value(&i_in_time, &j_in_time, drive);
+        self.row_of((i, j), &seeded, rates)
+    }
+
+    /// Returns a law between markers I and J over duals along the twists of I (0–5: rotation,
+    /// translation) and J (6–11).
+    fn along_twists(
+        &self,
+        law: Law,
+        (i, j): (usize, usize),
+        drive: Option<Drive<Jet<S>>>,
+    ) -> Dual<12, S> {
         let (I, J) = (self.marker(i), self.marker(j));
-        // gradient: duals along the twists of I (0–5: rotation, translation) and J (6–11)
-        let seeded = law.value(
+        law.value(
             &seed::<12, S>(&I, 0),
             &seed::<12, S>(&J, 6),
             drive.map(|d| {
@@ -64,10 +77,19 @@ impl<S: Scalar> Equations<'_, S> {
                     eps: [S::zero(); 12],
                 })
             }),
-        );
-        let [i_in_time, j_in_time] = self.both_in_time([i, j]);
-        let rates = law.value(&i_in_time, &j_in_time, drive);
-        self.row_of((i, j), &seeded, rates)
+        )
+    }
+
+    /// Returns value and gradient of a row, without its rates where these can be left out.
+    pub(crate) fn row_at_rest(&self, r: usize) -> (S, Vec<(usize, S)>) {
+        if let RowKind::Markers { law, i, j, motion } = self.scene.rows[r].kind {
+            let drive = motion.map(|m| self.row_drive(m));
+            let seeded = self.along_twists(law, (i, j), drive);
+            let actions = [(i, twist(&seeded, 0)), (j, twist(&seeded, 6))];
+            return (seeded.re, self.gradient_between((i, j), &actions));
+        }
+        let row = self.row(r);
+        (row.value, row.gradient.clone())
     }
 
     /// Returns two markers as they move in time.

@@ -68,13 +68,13 @@ fn driver(scene: Configured<'_>, numbers: &[f64], rows: &[usize], factors: &[f64
     };
     let at_motions = |displacements: &[f64]| {
         let there = scene.configuration.with_motions_at(displacements);
-        assemble::rows_at(scene.within(&there), t, q, x)
+        assemble::rows_at_rest(scene.within(&there), t, q, x)
     };
-    let (still, _, _) = at_motions(&values);
+    let (still, _) = at_motions(&values);
     let push = |k: usize| {
         let mut other = values.clone();
         other[k] += DISPLACEMENT;
-        let (g, _, _) = at_motions(&other);
+        let (g, _) = at_motions(&other);
         ((along(&g) - along(&still)) / DISPLACEMENT * at.prescribed(k).first).abs()
     };
     let pushes: Vec<f64> = (0..values.len()).map(push).collect();

@@ -112,7 +112,7 @@ impl Gradients {
 /// Evaluates all rows at one place, columns scaled, each row against its scale.
 fn gradients(scene: Configured<'_>, numbers: &[f64]) -> Vec<Vec<f64>> {
     let l = scene.layout;
-    let (_, gradient, _) = assemble::rows_at(
+    let (_, gradient) = assemble::rows_at_rest(
         scene,
         numbers[Layout::TIME],
         &numbers[l.q()],

@@ -153,9 +153,12 @@ impl Sides {
     /// `patience`: a time that is short.
     pub fn stands(&self, [from, to]: [&Side; 2], moments: [f64; 2], patience: f64) -> bool {
         (0..self.loops.len()).any(|k| {
-            let [before, after] = [from, to].map(|side| self.margin(&[k], side));
-            let falls = (before - after) / (moments[1] - moments[0]);
-            after < DEPENDENT_THERE && before > after && after < falls * patience
+            let after = self.margin(&[k], to);
+            after < DEPENDENT_THERE && {
+                let before = self.margin(&[k], from);
+                let falls = (before - after) / (moments[1] - moments[0]);
+                before > after && after < falls * patience
+            }
         })
     }
 
