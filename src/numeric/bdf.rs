@@ -471,7 +471,7 @@ impl Bdf {
             factor,
         };
         // errors of several orders cannot be compared
-        let stagnates = self.past.k == 1 && stagnation.see(h, errors.step);
+        let stagnates = self.past.k == 1 && stagnation.see(t1, h, errors.step);
         Err(Failed {
             rejection,
             order: Some(errors.k_new),
@@ -542,17 +542,17 @@ impl<P: Dae + ?Sized> Method<P> for Bdf {
                         self.past.h = self.past.h.max(proposed);
                     }
                     self.weights.see(t1, &self.next.y);
-                    let in_vain = self.permitted.accepted() | self.weights.is_raised();
+                    let in_vain = self.permitted.accepted(h) | self.weights.is_raised();
                     self.stats.below_rounding += usize::from(in_vain);
                     (self.t0, self.can_undo) = (t0, true);
                     return Ok(attempts.accepted(h, t1, order, &mut self.stats));
                 }
-                Err(failed)
-                    if failed
-                        .rounding
-                        .is_some_and(|size| self.permitted.raise(size)) =>
-                {
+                Err(Failed {
+                    rounding: Some(size),
+                    ..
+                }) if self.permitted.may_be_rounding(size) => {
                     attempts.repeat(&mut self.stats);
+                    self.permitted.raise(size, 0.0);
                     stagnation = Stagnation::default();
                 }
                 Err(failed) => {

@@ -294,6 +294,9 @@ const ABOVE_ROUNDING: f64 = 20.0;
 /// Factor of a permitted error that was raised with each further step.
 const FALLING_BACK: f64 = 0.8;
 
+/// Factor of the length up to which a raised permitted error is held with each further step.
+const LETTING_GO: f64 = 0.97;
+
 /// The permitted error of a step, raised while rounding lets no smaller one be met.
 #[derive(Clone, Copy, Debug)]
 pub struct Permitted {
@@ -303,6 +306,8 @@ pub struct Permitted {
     now: f64,
     /// whether the request asks for a smaller one
     in_vain: bool,
+    /// length of a step up to which a raised one is held, in s
+    held_to: f64,
 }
 
 impl Permitted {
@@ -314,6 +319,7 @@ impl Permitted {
             wanted,
             now: wanted,
             in_vain: asked < least,
+            held_to: 0.0,
         }
     }
 
@@ -332,20 +338,22 @@ impl Permitted {
         size * self.now <= MOST_ROUNDING
     }
 
-    /// Raises the permitted error above one that grows no smaller, as a part of the permitted one;
-    /// returns false where that is no rounding.
-    pub fn raise(&mut self, size: f64) -> bool {
-        let may = self.may_be_rounding(size);
-        if may {
-            self.now *= (ABOVE_ROUNDING * size).max(2.0);
-        }
-        may
+    /// Raises the permitted error above one that grows no smaller, as a part of the permitted one.
+    /// It is held until a step of length `h` has succeeded: at the short steps that rounding has
+    /// made nothing smaller could be kept.
+    pub fn raise(&mut self, size: f64, h: f64) {
+        self.now *= (ABOVE_ROUNDING * size).max(2.0);
+        self.held_to = h;
     }
 
-    /// Takes note of an accepted step; returns whether its request was below rounding.
-    pub fn accepted(&mut self) -> bool {
+    /// Takes note of an accepted step of length `h`; returns whether its request was below rounding.
+    pub fn accepted(&mut self, h: f64) -> bool {
         let in_vain = self.in_vain || self.is_raised();
-        self.now = (FALLING_BACK * self.now).max(self.wanted);
+        if h >= self.held_to {
+            self.held_to = 0.0;
+            self.now = (FALLING_BACK * self.now).max(self.wanted);
+        }
+        self.held_to *= LETTING_GO;
         in_vain
     }
 }
@@ -355,19 +363,40 @@ const MUCH_SHORTER: f64 = 1.0 / 16.0;
 /// Size of an error that has not become smaller, over the first.
 const AS_LARGE: f64 = 0.5;
 
-/// Errors of the attempts at one step: those of truncation fall as it is shortened.
+/// Errors of attempts over the same stretch: those of truncation fall as steps are shortened.
+///
+/// Rounding lets a short step succeed by chance, so that steps become shorter and shorter without
+/// any of them being shortened much. Attempts are therefore compared with the first one that ended
+/// no sooner.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stagnation {
-    /// length and error of the first attempt whose error was too large
-    first: Option<(f64, f64)>,
+    first: Option<TooLarge>,
+}
+
+/// An attempt whose error was too large.
+#[derive(Clone, Copy, Debug)]
+struct TooLarge {
+    /// where it ended, in s
+    end: f64,
+    /// length, in s
+    h: f64,
+    /// error, as a part of the permitted one
+    error: f64,
 }
 
 impl Stagnation {
-    /// Takes note of an attempt of length `h` whose error, as a part of the permitted one, was too
-    /// large; returns whether a much shorter step has not made it smaller.
-    pub fn see(&mut self, h: f64, error: f64) -> bool {
-        let (h0, first) = *self.first.get_or_insert((h, error));
-        h <= MUCH_SHORTER * h0 && error >= AS_LARGE * first
+    /// Takes note of an attempt of length `h` to `end` whose error, as a part of the permitted one,
+    /// was too large; returns whether a much shorter step has not made it smaller.
+    pub fn see(&mut self, end: f64, h: f64, error: f64) -> bool {
+        let known = self.first.filter(|first| end <= first.end);
+        let first = known.unwrap_or(TooLarge { end, h, error });
+        self.first = Some(first);
+        h <= MUCH_SHORTER * first.h && error >= AS_LARGE * first.error
+    }
+
+    /// Forgets the attempts; returns the length of the first, or `h` where there was none longer.
+    pub fn take_length(&mut self, h: f64) -> f64 {
+        self.first.take().map_or(h, |first| first.h.max(h))
     }
 }
 

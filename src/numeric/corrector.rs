@@ -349,7 +349,8 @@ impl Corrector {
                 }
                 // corrections of the size of rounding that fall no more are all that it leaves
                 if size <= at.rounding && size > SLOWEST_RATE * before {
-                    return Ok(());
+                    stagnant = Some(size);
+                    break;
                 }
                 factor = rate / (1.0 - rate);
                 (self.rate_factor, self.measured) = (factor, first);

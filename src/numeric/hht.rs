@@ -55,6 +55,8 @@ pub struct Hht {
     stats: Stats,
     /// permitted error of a step
     permitted: Permitted,
+    /// errors that rounding may keep from falling
+    stagnation: Stagnation,
     /// αf of (4)
     alpha_f: f64,
     /// αm of (4)
@@ -147,6 +149,7 @@ impl Hht {
         Hht {
             options: options.clone(),
             permitted,
+            stagnation: Stagnation::default(),
             weights,
             control: Pi::new(3.0, 0.0, 0.9, 0.2, 4.0),
             stats: Stats::default(),
@@ -169,6 +172,7 @@ impl Hht {
     fn begin<P: Dae + ?Sized>(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop> {
         let stop = |reason| Stop { reason, t, h: 0.0 };
         self.can_undo = false;
+        self.stagnation = Stagnation::default();
         let now = &mut self.now;
         now.y.copy_from_slice(y);
         problem
@@ -206,7 +210,6 @@ impl Hht {
         &mut self,
         problem: &mut P,
         (h, t1): (f64, f64),
-        stagnation: &mut Stagnation,
     ) -> Result<f64, (Rejection, Option<f64>)> {
         let now = &self.now;
         let (af, am, gamma) = (self.alpha_f, self.alpha_m, self.gamma);
@@ -265,7 +268,8 @@ impl Hht {
             recoverable: true,
             factor: self.control.rejected(error),
         };
-        Err((rejection, stagnation.see(h, error).then_some(error)))
+        let stagnates = self.stagnation.see(t1, h, error);
+        Err((rejection, stagnates.then_some(error)))
     }
 
     /// Advances the state over an accepted step.
@@ -324,12 +328,11 @@ impl<P: Dae + ?Sized> Method<P> for Hht {
     fn step(&mut self, problem: &mut P, t_limit: f64) -> Result<Step, Stop> {
         self.before.copy_from(&self.now);
         let mut attempts = Attempts::new(self.now.t, t_limit, &self.options);
-        let mut stagnation = Stagnation::default();
         loop {
             let proposed = self.now.h.min(self.options.h_max);
             let too_fast = || control::too_fast(&self.now.ydot, &self.weights);
             let (h, t1) = attempts.next(proposed, &self.options, &self.stats, too_fast)?;
-            match self.attempt(problem, (h, t1), &mut stagnation) {
+            match self.attempt(problem, (h, t1)) {
                 Ok(error) => {
                     let calm = attempts.rejected() > 0;
                     let factor = self.control.accepted(error, calm, false);
@@ -346,14 +349,14 @@ impl<P: Dae + ?Sized> Method<P> for Hht {
                         grown
                     };
                     self.weights.see(t1, &self.next.y);
-                    let in_vain = self.permitted.accepted() | self.weights.is_raised();
+                    let in_vain = self.permitted.accepted(h) | self.weights.is_raised();
                     self.stats.below_rounding += usize::from(in_vain);
                     self.can_undo = true;
                     return Ok(attempts.accepted(h, t1, ORDER, &mut self.stats));
                 }
-                Err((_, Some(size))) if self.permitted.raise(size) => {
+                Err((_, Some(size))) if self.permitted.may_be_rounding(size) => {
                     attempts.repeat(&mut self.stats);
-                    stagnation = Stagnation::default();
+                    self.permitted.raise(size, self.stagnation.take_length(h));
                     self.now.h = h;
                 }
                 Err((rejection, _)) => {
