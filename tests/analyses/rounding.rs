@@ -177,6 +177,26 @@ fn no_method_asks_for_less_than_the_digits_of_a_coordinate_have() {
     }
 }
 
+/// Where rounding of a closed loop is more than a method permits in a step, short steps succeed by chance, and steps became
+/// ever shorter: HHT stopped at 5e-6 s by a request of 1e-8.
+#[test]
+fn methods_of_second_order_go_on_where_rounding_of_loops_is_felt() {
+    let text = include_str!("../data/references/a03_andrews.adm");
+    let column = "WZ(2)";
+    let end = |method: &str, error: f64| {
+        let mut options = options_by(&[column], method, error);
+        options.max_steps = Some(50_000);
+        let mut s = begin(whole(text), method, options);
+        go(&mut s, Analysis::Dynamic, 2e-4, 2);
+        running::last(&s, column)
+    };
+    let expected = end("DOP853", 1e-11);
+    for error in [1e-8, 1e-9, 1e-10] {
+        let off = (end("HHT", error) / expected - 1.0).abs();
+        assert!(off < 1e-8, "{error:e}: {off:e}");
+    }
+}
+
 /// A part on a bushing, its marker off its mass, drawn 0.2 m from where the bushing is without load.
 fn on_a_bushing(mass: f64, [stiffness, damping]: [f64; 2]) -> String {
     let [turning, slowing] = [stiffness, damping].map(|x| 1e-3 * x);
