@@ -346,7 +346,8 @@ impl Permitted {
         self.held_to = h;
     }
 
-    /// Takes note of an accepted step of length `h`; returns whether its request was below rounding.
+    /// Takes note of an accepted step of length `h`; returns whether its request was below
+    /// rounding.
     pub fn accepted(&mut self, h: f64) -> bool {
         let in_vain = self.in_vain || self.is_raised();
         if h >= self.held_to {
