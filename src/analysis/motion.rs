@@ -323,7 +323,9 @@ mod tests {
         }
 
         #[test]
-        fn markers_of_a_digest_are_those_of_debug(number: u32, owner: u32, x in -9i32..9, kind in 0..6) {
+        fn markers_of_a_digest_are_those_of_debug(
+            number: u32, owner: u32, x in -9i32..9, kind in 0..6
+        ) {
             let qp = [f64::from(x), 0.0, 0.1 * f64::from(x)];
             let marker = Marker {
                 owner: match kind {
@@ -343,7 +345,8 @@ mod tests {
             let mut text = String::new();
             push_marker(&mut text, number, &marker);
             let Marker { owner, orientation, floating, .. } = marker;
-            prop_assert_eq!(text, format!("{number} {owner:?} {qp:?} {orientation:?} {floating}\n"));
+            let debug = format!("{number} {owner:?} {qp:?} {orientation:?} {floating}\n");
+            prop_assert_eq!(text, debug);
         }
     }
 }

@@ -552,6 +552,7 @@ impl<P: Dae + ?Sized> Method<P> for Bdf {
                     ..
                 }) if self.permitted.may_be_rounding(size) => {
                     attempts.repeat(&mut self.stats);
+                    // not held: at singular positions it would be for long
                     self.permitted.raise(size, 0.0);
                     stagnation = Stagnation::default();
                 }

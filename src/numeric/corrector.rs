@@ -19,8 +19,9 @@
 //!
 //! Unknowns whose error is not controlled are judged loosely, multipliers of higher index not at
 //! all: they are linear in the rest of the iteration and carry rounding errors of order 1/h², which
-//! no iteration removes. Corrections of the size of rounding that fall no more end the iteration as
-//! well: they go to and fro between neighbouring numbers for ever.
+//! no iteration removes. Corrections of the size of rounding that fall no more end the iteration
+//! too, as they go to and fro between neighbouring numbers: [`Trouble::stagnant`] says how large
+//! they are, so that the permitted error can be raised above them.
 //!
 //! Source: Brenan, Campbell & Petzold, Numerical Solution of Initial-Value Problems in DAEs, 5.2.2;
 //! Petzold & Lötstedt 1986 for (3).
