@@ -4,9 +4,12 @@
 //! magnitude. A log is obeyed with the dataset beside it; what Adams knows and we do not (USER routines, elements that are not solved) is left out
 //! and counted as such.
 
+use installed::Installed;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::time::Instant;
+
+#[path = "../tests/common/installed.rs"]
+mod installed;
 
 /// Runs of each log, of which the fastest counts.
 const ROUNDS: usize = 3;
@@ -58,6 +61,7 @@ fn main() {
     below(Path::new(&corpus), "msg", &mut logs);
     logs.sort();
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("logs");
+    let program = Installed::new("logs-program");
     println!(
         "{:<52} {:>9} {:>9} {:>7}  how it ended",
         "log", "Adams, s", "ours, s", "ratio"
@@ -82,7 +86,8 @@ fn main() {
         let (mut least, mut ended) = (f64::INFINITY, String::new());
         for _ in 0..ROUNDS {
             let (clock, before) = (Instant::now(), children_seconds());
-            let run = Command::new(env!("CARGO_BIN_EXE_cognate"))
+            let run = program
+                .command()
                 .args([
                     "run",
                     "--quiet",

@@ -4,9 +4,12 @@
 //! (goal: within 1 %), the time that an element of ballast adds to a whole `cognate run` (goal: 2 µs), and whether the pendulum's
 //! columns are the same to the bit.
 
+use installed::Installed;
 use std::path::Path;
-use std::process::Command;
 use std::time::Instant;
+
+#[path = "../tests/common/installed.rs"]
+mod installed;
 
 /// Elements of ballast, where the command line says nothing else.
 const ELEMENTS: usize = 1000;
@@ -142,7 +145,8 @@ fn main() {
     std::fs::create_dir_all(&folder).expect("a folder for models");
     let asked = std::env::args().skip(1).find_map(|a| a.parse().ok());
     let n: usize = asked.unwrap_or(ELEMENTS);
-    let bare = measured(&folder, "", "");
+    let program = Installed::new("pruning-program");
+    let bare = measured(&program, &folder, "", "");
     println!(
         "{:24}{:>12}{:>14}{:>16}{:>12}",
         format!("{n} of each"),
@@ -155,7 +159,7 @@ fn main() {
         let ballast: String = (1..=n).map(|k| statements(k) + "\n").collect();
         let commands: String =
             command.map_or(String::new(), |c| (1..=n).map(|k| c(k) + "\n").collect());
-        let with = measured(&folder, &ballast, &commands);
+        let with = measured(&program, &folder, &ballast, &commands);
         let ratio = with.operations as f64 / bare.operations as f64;
         let each = 1e6 * (with.seconds - bare.seconds) / n as f64;
         let same = if with.columns == bare.columns {
@@ -172,7 +176,7 @@ fn main() {
     std::fs::remove_dir_all(&folder).expect("the folder can be removed");
 }
 
-fn measured(folder: &Path, ballast: &str, commands: &str) -> Measured {
+fn measured(program: &Installed, folder: &Path, ballast: &str, commands: &str) -> Measured {
     let script = folder.join("model.acf");
     std::fs::write(
         folder.join("model.adm"),
@@ -183,14 +187,17 @@ fn measured(folder: &Path, ballast: &str, commands: &str) -> Measured {
     std::fs::write(&script, text).expect("the script is written");
     let script = script.to_string_lossy();
     let outline: serde_json::Value =
-        serde_json::from_slice(&cognate(&["explain", &script, "--json"]))
+        serde_json::from_slice(&cognate(program, &["explain", &script, "--json"]))
             .expect("an outline in JSON");
     let out = folder.join("out");
     let mut seconds = f64::INFINITY;
     for _ in 0..RUNS {
         let _ = std::fs::remove_dir_all(&out);
         let begin = Instant::now();
-        cognate(&["run", &script, "--out", &out.to_string_lossy(), "--quiet"]);
+        cognate(
+            program,
+            &["run", &script, "--out", &out.to_string_lossy(), "--quiet"],
+        );
         seconds = seconds.min(begin.elapsed().as_secs_f64());
     }
     let table = std::fs::read_to_string(out.join("model.csv")).expect("columns");
@@ -205,8 +212,9 @@ fn measured(folder: &Path, ballast: &str, commands: &str) -> Measured {
 }
 
 /// Runs the program; returns what it prints.
-fn cognate(arguments: &[&str]) -> Vec<u8> {
-    let done = Command::new(env!("CARGO_BIN_EXE_cognate"))
+fn cognate(program: &Installed, arguments: &[&str]) -> Vec<u8> {
+    let done = program
+        .command()
         .args(arguments)
         .output()
         .expect("cognate runs");

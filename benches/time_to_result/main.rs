@@ -8,11 +8,14 @@
 
 mod mujoco;
 
+use installed::Installed;
 use mujoco::Peer;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::time::Instant;
+
+#[path = "../../tests/common/installed.rs"]
+mod installed;
 
 /// A family of models: its name, its first size, the dataset of a size, and the same in MuJoCo's language where it can say it.
 type Family = (
@@ -67,8 +70,9 @@ fn main() {
     let folder =
         std::env::temp_dir().join(format!("cognate-time-to-result-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder for models");
+    let program = Installed::new("time-to-result-program");
     if word.is_none_or(|w| "small".contains(w.as_str())) {
-        small(&folder);
+        small(&program, &folder);
     }
     let peer = Peer::found();
     println!("{}", peer.told());
@@ -87,7 +91,7 @@ fn main() {
             let mut theirs = f64::INFINITY;
             let mut best = (f64::INFINITY, 0.0);
             for _ in 0..RUNS {
-                let (whole, solving) = run(&folder);
+                let (whole, solving) = run(&program, &folder);
                 if whole < best.0 {
                     best = (whole, solving);
                 }
@@ -110,17 +114,20 @@ fn main() {
 }
 
 /// Prints the medians of the start of the program and of small models, taken in turns.
-fn small(folder: &Path) {
+fn small(program: &Installed, folder: &Path) {
     let references = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/references");
     let out = folder.join("small");
     let mut times = vec![Vec::new(); SMALL.len() + 1];
     for _ in 0..SMALL_RUNS {
         let (start, models) = times.split_first_mut().expect("the start");
-        start.push(seconds(&["--version"]));
+        start.push(seconds(program, &["--version"]));
         for (name, times) in SMALL.iter().zip(models) {
             let script = references.join(name).with_extension("acf");
             let [script, out] = [&script, &out].map(|path| path.to_string_lossy());
-            times.push(seconds(&["run", &script, "--out", &out, "--quiet"]));
+            times.push(seconds(
+                program,
+                &["run", &script, "--out", &out, "--quiet"],
+            ));
             std::fs::remove_dir_all(folder.join("small")).expect("results");
         }
     }
@@ -132,9 +139,10 @@ fn small(folder: &Path) {
 }
 
 /// Returns the seconds that the program takes with these arguments.
-fn seconds(arguments: &[&str]) -> f64 {
+fn seconds(program: &Installed, arguments: &[&str]) -> f64 {
     let begin = Instant::now();
-    let done = Command::new(env!("CARGO_BIN_EXE_cognate"))
+    let done = program
+        .command()
         .args(arguments)
         .output()
         .expect("cognate runs");
@@ -165,12 +173,12 @@ fn write_other(folder: &Path, xml: String) -> PathBuf {
 }
 
 /// Runs the model in a process of its own; returns the seconds it took, and those of it that it solved.
-fn run(folder: &Path) -> (f64, f64) {
+fn run(program: &Installed, folder: &Path) -> (f64, f64) {
     let out = folder.join("out");
     let _ = std::fs::remove_dir_all(&out);
     let script = folder.join("model.acf");
     let [script, to] = [&script, &out].map(|path| path.to_string_lossy());
-    let seconds = seconds(&["run", &script, "--out", &to, "--quiet"]);
+    let seconds = seconds(program, &["run", &script, "--out", &to, "--quiet"]);
     let record = std::fs::read_to_string(out.join("model.json")).expect("a record");
     let record: serde_json::Value = serde_json::from_str(&record).expect("a record in JSON");
     (
