@@ -80,6 +80,40 @@ pub struct EnergyFlow {
 const ROUNDINGS: f64 = 4.0;
 
 impl EnergyFlow {
+    /// Returns the account of this stretch and one that follows it.
+    #[must_use]
+    pub(in crate::analysis) fn followed_by(&self, later: &Self) -> Self {
+        let mut works = self.works;
+        (works.iter_mut().zip(later.works)).for_each(|(work, more)| *work += more);
+        let of_works = works.iter().fold(0.0, |m: f64, work| m.max(work.abs()));
+        Self {
+            start: self.start.or(later.start),
+            end: later.end,
+            works,
+            kinetic: self.kinetic.max(later.kinetic),
+            scale: self.scale.max(later.scale).max(of_works),
+            imbalance: self.imbalance + later.imbalance,
+            spent: self.spent + later.spent,
+        }
+    }
+
+    /// Returns the account of two systems over the same time.
+    #[must_use]
+    pub(in crate::analysis) fn beside(&self, other: &Self) -> Self {
+        let sum = |[a, b]: Energy, [c, d]: Energy| [a + c, b + d];
+        let mut works = self.works;
+        (works.iter_mut().zip(other.works)).for_each(|(work, more)| *work += more);
+        Self {
+            start: self.start.zip(other.start).map(|(a, b)| sum(a, b)),
+            end: sum(self.end, other.end),
+            works,
+            kinetic: self.kinetic + other.kinetic,
+            scale: self.scale + other.scale,
+            imbalance: self.imbalance + other.imbalance,
+            spent: self.spent + other.spent,
+        }
+    }
+
     /// Compares the energy with what was put in so far.
     pub(super) fn look(&mut self, energy: Energy) {
         let Some(start) = self.start else {
@@ -160,8 +194,10 @@ pub struct Trajectory {
     pub(in crate::analysis) runaway: Runaway,
     /// steps that something else than the permitted error ended
     pub limited: Limited,
-    /// `None`: all output times were reached
+    /// `None`: all output times were reached, or mechanisms are to go on apart
     pub ended: Option<Ended>,
+    /// all numbers where mechanisms that nothing couples are to go on each by itself
+    pub parted: Option<Vec<f64>>,
 }
 
 impl Trajectory {

@@ -78,6 +78,11 @@ pub struct LimitArgs {
     pub limit: Option<f64>,
 }
 
+/// Returns how many threads to work on: those asked for, else one for each processor.
+pub fn threads(asked: Option<usize>) -> usize {
+    asked.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
+}
+
 impl IntegrationArgs {
     /// Returns options with this error and method.
     pub fn given_to(&self, options: Options) -> Options {

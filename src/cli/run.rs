@@ -1,6 +1,6 @@
 //! `cognate run`: a model with its commands, from file to results.
 
-use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs};
+use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, threads};
 use super::doubted;
 use super::limit::{Guard, simulations_to_the_end};
 use super::progress::Progress;
@@ -66,6 +66,10 @@ pub struct Args {
     unsolved: UnsolvedArgs,
     #[command(flatten)]
     limits: LimitArgs,
+    /// Threads for mechanisms that nothing couples, which change no result; without it as many as
+    /// there are processors
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
     #[command(flatten)]
     output: output::FileArgs,
     /// Record only this element, as JOINT/3 or by its name, or this kind, as JOINT (repeatable);
@@ -362,6 +366,7 @@ fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session 
         body_rates: args.body_motion,
         only: args.only.clone(),
         accuracy: args.accuracy,
+        threads: Some(threads(args.threads)),
         ..Options::default()
     };
     let options = args.integration.given_to(options);

@@ -1,6 +1,6 @@
 //! `cognate sweep`: one model many times, and a table of what came of it.
 
-use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs};
+use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, threads};
 use super::progress::Progress;
 use super::render::Sources;
 use super::run::{self, Single};
@@ -100,8 +100,7 @@ pub fn run(args: &Args) -> Outcome {
     interrupt::results_begin();
 
     // solve
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = args.threads.unwrap_or(cores);
+    let threads = threads(args.threads);
     let progress = Progress::new(args.quiet, 0.0, points.len() as f64);
     let mut done = table.n_found();
     let outcome = sweep.run(&points, &missing, threads, &Terminal, |row| {

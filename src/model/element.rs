@@ -394,6 +394,19 @@ macro_rules! kinds {
                 all
             }
 
+            /// Takes an element over as another model has it, where it does.
+            pub(crate) fn take_over(&mut self, id: ElementId, from: &Model) {
+                match id.kind {
+                    $(ElementKind::$kind => {
+                        let found = from.$list.get(&id.number);
+                        self.$list.extend(found.map(|e| (id.number, e.clone())));
+                    })*
+                    $(ElementKind::$kept)|* => {
+                        self.others.extend(from.others.get(&id).map(|e| (id, e.clone())));
+                    }
+                }
+            }
+
             /// Removes all elements of a kind.
             pub fn clear(&mut self, kind: ElementKind) {
                 match kind {

@@ -5,6 +5,7 @@
 //! and printed in any order. All fields are public; `check` and the scene compiler say what does
 //! not fit together. Nothing here knows how anything is computed.
 
+mod apart;
 mod beginning;
 mod body;
 mod called;

@@ -23,6 +23,7 @@ macro_rules! pendulum {
 
 mod accuracy;
 mod allocations;
+mod apart;
 mod building;
 mod delays;
 mod doors;

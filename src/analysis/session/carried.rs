@@ -58,6 +58,13 @@ impl Carried {
 impl Session {
     /// Keeps the state of a system for the next simulation.
     pub(super) fn keep(&mut self, system: &System, numbers: Vec<f64>) {
+        self.carried = Some(Carried::of(system, numbers));
+    }
+}
+
+impl Carried {
+    /// Takes the state of a system, of which all numbers are given.
+    pub(super) fn of(system: &System, numbers: Vec<f64>) -> Self {
         let at = Equations::new(system.configured(), &numbers);
         let parts = system.scene.parts.iter().enumerate();
         let parts = parts.map(|(k, p)| (p.id, at.part(k, false))).collect();
@@ -72,7 +79,7 @@ impl Session {
         let counted = system.scene.counted.iter();
         let turns = counted.map(|c| (c.id, at.counted(c.id))).collect();
         let unknowns = &system.scene.unknowns;
-        self.carried = Some(Carried {
+        Carried {
             t: numbers[Layout::TIME],
             coordinates,
             turns,
@@ -85,7 +92,7 @@ impl Session {
             left: None,
             parts,
             numbers,
-        });
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 //! one), computes, and appends its rows to the run. What goes wrong in numbers is an outcome in
 //! the record, with the results so far; what is wrong in the model is an error.
 
+mod apart;
 mod arguments;
 mod at_rest;
 pub mod beginning;
@@ -114,6 +115,9 @@ pub struct Options {
     /// results so far; `None`: any time. It is looked at after each step, each iteration of statics
     /// and each phase of setting up
     pub limit: Option<f64>,
+    /// threads on which mechanisms that nothing couples are integrated; results do not depend on
+    /// it. `None`: one
+    pub threads: Option<usize>,
     /// give every column bars of error, from further runs at other requests
     pub accuracy: bool,
     /// keep the states of all rows: columns may then be named after a simulation, see

@@ -148,6 +148,10 @@ impl Session {
         (seen, watch): (&mut Seen, &mut dyn Watch),
     ) -> Result<(Trajectory, f64), Vec<Diagnostic>> {
         let outputs = span.output.times(span.start, span.end);
+        let settings = &Options {
+            may_part: kind == Kind::Dynamic && self.may_part(system),
+            ..settings.clone()
+        };
         let first = system.numbers.clone();
         let chosen = system.configuration.active.clone();
         let phase = Phase::begin();
@@ -178,6 +182,17 @@ impl Session {
                 Some(path) => kinematics::trace(system, path, &outputs, settings, &mut follower),
                 None => dynamics::integrate(system, &outputs, settings, &mut follower),
             };
+            if let Some(numbers) = trajectory.parted.take() {
+                let seen = (&mut *seen, k == repeat);
+                self.go_on_apart(
+                    (system, numbers),
+                    &outputs,
+                    settings,
+                    seen,
+                    watch,
+                    &mut trajectory,
+                );
+            }
             let (own, translation) = phase.elapsed();
             let spent = trajectory.energy.spent.as_secs_f64() + seen.seconds;
             seconds.push((own - spent).max(0.0));
@@ -191,6 +206,43 @@ impl Session {
         seconds.sort_by(f64::total_cmp);
         let median = seconds[seconds.len() / 2];
         Ok((trajectory, median))
+    }
+
+    /// Lets mechanisms that nothing couples go on each by itself to the end, if they can.
+    fn go_on_apart(
+        &mut self,
+        (system, numbers): (&mut System, Vec<f64>),
+        outputs: &[f64],
+        settings: &Options,
+        (seen, is_kept): (&mut Seen, bool),
+        watch: &mut dyn Watch,
+        trajectory: &mut Trajectory,
+    ) {
+        let outputs = &outputs[trajectory.t.len()..];
+        let t = numbers[Layout::TIME];
+        let left = outputs.last().map_or(0.0, |end| end - t);
+        let mechanisms = self.take_apart(system, (&numbers, left), watch);
+        system.numbers.copy_from_slice(&numbers);
+        if let Some(mechanisms) = mechanisms.as_ref().filter(|_| is_kept) {
+            let n = mechanisms.len();
+            self.run.log.push(Event::Info(format!(
+                "{n} mechanisms that nothing couples have steps of their own from time {t} on"
+            )));
+        }
+        let threads = self.options.threads.unwrap_or(1);
+        let together = Options {
+            may_part: false,
+            left: None,
+            ..settings.clone()
+        };
+        let mut follower = Follower::new(self, seen, watch, is_kept);
+        match mechanisms {
+            Some(mechanisms) => {
+                let outputs = (outputs, threads);
+                mechanisms.integrate(system, outputs, &together, &mut follower, trajectory);
+            }
+            None => dynamics::go_on(system, outputs, &together, &mut follower, trajectory),
+        }
     }
 
     /// Notes in the log which sensors were triggered, and whether one ended the run.

@@ -84,6 +84,7 @@ impl<'a> Course<'a> {
     fn go_on(&mut self, finished: Finished, method: &dyn Method<System>) -> Result<(), Ended> {
         (self.name, self.why) = match finished {
             Finished::Ended(why) => return Err(why),
+            Finished::Parts => unreachable!("what is taken apart goes on elsewhere"),
             Finished::Rows(_) => {
                 self.restarts += 1;
                 if self.restarts > MAX_ROW_RESTARTS {
@@ -133,6 +134,21 @@ pub fn integrate(
     out
 }
 
+/// Integrates from the state in `system.numbers` through further `outputs`, behind what a
+/// trajectory has; states downstream of the mechanism there may be none.
+pub(in crate::analysis) fn go_on(
+    system: &mut System,
+    outputs: &[f64],
+    options: &Options,
+    watch: &mut dyn Watch,
+    out: &mut Trajectory,
+) {
+    let Some(&end) = outputs.last() else { return };
+    let before = std::mem::take(&mut out.energy);
+    go((system, None), (outputs, end), options, watch, out);
+    out.energy = before.followed_by(&out.energy);
+}
+
 /// Integrates a mechanism to the end, and what is downstream beside it.
 fn go(
     (system, mut downstream): (&mut System, Option<&mut Downstream>),
@@ -152,11 +168,12 @@ fn go(
     if n > 0 {
         energy::begin(&mut out.energy, system, t0, &y);
     }
-    let mut outputs = outputs.to_vec();
+    let first = out.t.len();
+    let mut outputs = [&out.t[..], outputs].concat();
     let landings = system.landings(t0, end);
     let mut course = Course::new(options, n);
     if !numeric::is_implicit(&course.name) {
-        system.expect_outputs(outputs.len(), false);
+        system.expect_outputs(outputs.len() - first, false);
     }
     let mut t = t0;
     loop {
@@ -182,6 +199,7 @@ fn go(
             may_change: course.may_change(),
             returns_after: course.returns_after(),
             may_slide: !implicit,
+            may_part: options.may_part,
         };
         let beside = (downstream.as_deref_mut(), state.len());
         let mut leg = Leg::new(system, watch, limits, (out, &mut outputs), beside);
@@ -199,6 +217,10 @@ fn go(
             Finished::Rows(state) => &state[..n],
             _ => &method.y()[..n],
         });
+        if matches!(finished, Finished::Parts) {
+            out.parted = Some(system.row(method.t(), &y));
+            return;
+        }
         if let Err(why) = course.go_on(finished, method.as_ref()) {
             end_there(system, method.as_ref(), why, t0, out);
             return;

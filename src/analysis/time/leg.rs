@@ -34,6 +34,12 @@ const STALLED_PART: f64 = 1e-8;
 /// Steps that are left, at least, where another method takes over: it starts with short steps, and
 /// each costs several of an explicit one.
 const STEPS_WORTH_A_CHANGE: f64 = 100.0;
+/// Events, attempted steps, and operations of one evaluation in each step, at least, before
+/// mechanisms that nothing couples are taken apart: recording an operation costs as much as running
+/// it some thousand times, and below some milliseconds nobody waits.
+const EVENTS_TOGETHER: usize = 32;
+const STEPS_TOGETHER: usize = 300;
+const OPERATIONS_TOGETHER: usize = 1_000_000;
 /// Shortest way that is looked ahead for pulses, bodies and the past, as a part of the time left.
 const LEAST_HORIZON: f64 = 1e-6;
 /// The same for delays that shrink to nothing.
@@ -51,6 +57,8 @@ pub(super) enum Finished {
     Slides,
     /// other rows are to be kept from here, or the state has been put onto all of them
     Rows(Vec<f64>),
+    /// mechanisms that nothing couples would do better each by itself
+    Parts,
 }
 
 impl From<Stop> for Finished {
@@ -77,6 +85,8 @@ pub(super) struct Limits<'a> {
     pub returns_after: usize,
     /// whether the method can follow a motion that stays where a branch changes
     pub may_slide: bool,
+    /// whether mechanisms that nothing couples may go on each by itself
+    pub may_part: bool,
 }
 
 /// The part of an integration that one method does.
@@ -204,6 +214,9 @@ impl<'a> Leg<'a> {
             if switched && step.t1 < self.limits.end {
                 self.begin_anew(method, &step, anew, stepsize)?;
                 self.changes += 1;
+                if self.parts(method) {
+                    return Err(Finished::Parts);
+                }
                 if self.changes == self.limits.returns_after && !self.switches.slide() {
                     return Err(Finished::Eased);
                 }
@@ -214,6 +227,17 @@ impl<'a> Leg<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Returns whether mechanisms that nothing couples had better go on each by itself: all have
+    /// begun anew at the events of each so often that it has cost what taking them apart does.
+    fn parts(&self, method: &dyn Method<System>) -> bool {
+        // outputs cost evaluations, but no step
+        let steps = self.out.stats.steps + self.out.stats.rejected + attempted(method);
+        self.limits.may_part
+            && self.out.events >= EVENTS_TOGETHER
+            && steps >= STEPS_TOGETHER
+            && steps.saturating_mul(self.system.operations()) >= OPERATIONS_TOGETHER
     }
 
     /// Starts the method on the branches that hold at the state.

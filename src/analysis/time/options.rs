@@ -38,6 +38,9 @@ pub struct Options {
     pub max_newton: Option<usize>,
     /// attempted steps, by all methods together
     pub max_steps: usize,
+    /// whether mechanisms that nothing couples may be taken apart on the way: see
+    /// [`Trajectory::parted`](crate::analysis::trajectory::Trajectory::parted)
+    pub may_part: bool,
 }
 
 impl Default for Options {
@@ -54,6 +57,7 @@ impl Default for Options {
             max_order: None,
             max_newton: None,
             max_steps: usize::MAX,
+            may_part: false,
         }
     }
 }
