@@ -37,6 +37,7 @@ const FAMILIES: &[Family] = &[
     ("scissor lift", 10, scissor_lift, None),
     ("truss", 5, truss, None),
     ("contacts", 100, contacts, Some(mujoco::contacts)),
+    ("balls that bounce for a second", 50, balls, None),
     ("frictions", 100, frictions, None),
     ("pairs of coupled wheels", 100, coupled_wheels, None),
     ("chain of variables under a motion", 1000, variables, None),
@@ -160,7 +161,10 @@ fn milliseconds(seconds: f64) -> String {
 }
 
 fn write_model(folder: &Path, dataset: Dataset) {
-    let script = "model.adm\nmodel\nSIMULATE/DYNAMIC, END=0.01, STEPS=1\nSTOP\n";
+    let script = format!(
+        "model.adm\nmodel\nSIMULATE/DYNAMIC, END={}, STEPS=1\nSTOP\n",
+        dataset.duration
+    );
     std::fs::write(folder.join("model.adm"), dataset.end()).expect("the dataset is written");
     std::fs::write(folder.join("model.acf"), script).expect("the script is written");
 }
@@ -193,6 +197,8 @@ struct Dataset {
     parts: usize,
     markers: usize,
     joints: usize,
+    /// time that is simulated, s
+    duration: f64,
 }
 
 /// A part, where its frame stands.
@@ -215,6 +221,7 @@ impl Dataset {
             parts: 1,
             markers: 0,
             joints: 0,
+            duration: 0.01,
         }
     }
 
@@ -378,6 +385,23 @@ fn contacts(n: usize) -> Dataset {
             "CONTACT/{contact}, IGEOM={ball}, JGEOM=1, IMPACT, STIFFNESS=1e5, DAMPING=10, DMAX=0.01, EXPONENT=2.2"
         );
         d.line(&lines);
+    }
+    d
+}
+
+/// Balls that each have a plate of their own and fall from another height, so that no two bounce at once.
+fn balls(n: usize) -> Dataset {
+    let mut d = Dataset::new();
+    d.duration = 1.0;
+    for k in 0..n {
+        let (x, height) = (k as f64, 0.2 + 0.3 * (0.618 * k as f64).fract());
+        let (_, cm) = d.part([x, height, 0.0], "");
+        let plate = d.marker(GROUND, [x, 0.0, 0.0], ", REULER=180D,90D,180D");
+        d.line(&format!(
+            "SFORCE/{}, TRANSLATION, ACTIONONLY, I={cm}, J={plate}, \
+             FUNCTION=IMPACT(DY({cm},{plate}),VY({cm},{plate}),0.1,1e5,1.5,20,1e-4)",
+            k + 1
+        ));
     }
     d
 }

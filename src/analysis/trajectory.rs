@@ -49,6 +49,17 @@ pub enum Takeover {
     Slides,
 }
 
+/// A position at which rows become dependent while the mechanism passes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pass {
+    /// time
+    pub t: f64,
+    /// rows that depend on others there and not nearby
+    pub rows: Vec<String>,
+    /// coordinates there: (name, value), those of the loops concerned first
+    pub place: Vec<(String, f64)>,
+}
+
 /// The name of a method, and what it leaves to one of its kind that goes on.
 pub type Left = (String, Arc<Memory>);
 /// Kinetic energy, and potential energy in gravity.
@@ -175,6 +186,8 @@ pub struct Trajectory {
     /// states (all numbers) about positions where rows are nearly dependent; `None` separates what
     /// does not follow on
     pub weak: Vec<Option<Vec<f64>>>,
+    /// positions at which rows become dependent that were found apart from these
+    pub passes: Vec<Pass>,
     /// choices of rows after the first: the row of results from which each holds, when it was made,
     /// and which rows take part
     pub selections: Vec<(usize, f64, Vec<bool>)>,

@@ -213,7 +213,7 @@ mod tests {
     fn whatever_reads_two_mechanisms_connects_them() {
         for text in [
             "SPRINGDAMPER/1, I=101, J=102, TRANSLATION, K=1, LENGTH=1\n",
-            "COUPLER/1, JOINTS=1,2, TYPE=R,R, SCALES=1,1\n",
+            "COUPLER/1, JOINTS=1,2, TYPE=R:R, SCALES=1,1\n",
             "VARIABLE/8, FUNCTION=DX(101)\nSFORCE/9, I=102, J=1, TRANSLATION, FUNCTION=VARVAL(8)\n",
             "SFORCE/9, I=102, J=1, TRANSLATION, FUNCTION=IF(AZ(201,1): 0, 0, 1)\n",
             "DIFF/1, FUNCTION=DX(101)-DIF(1), IC=0\nSFORCE/9, I=102, J=1, TRANSLATION, \

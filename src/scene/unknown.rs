@@ -179,6 +179,17 @@ impl From<DifferentialId> for Subject {
 }
 
 impl UnknownId {
+    /// Returns the element that it belongs to.
+    pub fn element(&self) -> ElementId {
+        match self {
+            Self::Position(coordinate) | Self::Velocity(coordinate) => coordinate.element,
+            Self::EulerParameter { ball, .. } => ball.element,
+            Self::Motion { motion, .. } => *motion,
+            Self::Differential(equation) => equation.element,
+            Self::ContactPlace { contact, .. } => *contact,
+        }
+    }
+
     /// Reads the printed form.
     fn read(text: &str) -> Option<Self> {
         if let Some(coordinate) = text.strip_prefix("rate of ") {

@@ -187,7 +187,7 @@ fn closed_loops_against_stops_go_on_apart_with_the_energy_of_the_whole() {
         let off = found.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(off < 1e-5, "{column} is off by {off:e}");
     }
-    let [a, b] = [&parted, &whole].map(|s| s.run.record.energy.clone());
+    let [a, b] = [&parted, &whole].map(|s| s.run.record.energy);
     let scale = a.potential[0].abs();
     for (a, b) in [
         (a.kinetic[1], b.kinetic[1]),

@@ -12,13 +12,14 @@
 //! A mechanism is a session of the elements that have to do with each other
 //! ([`Model::apart`](crate::model::Model)), which goes on from the state of the whole. Where one
 //! meets what speaks of the whole, or stops, the stretch is undone and the whole goes on together:
-//! nothing ends otherwise than it would have ended. Steps know nothing of threads, so that there
-//! are the same bits on any number of them.
+//! nothing ends otherwise than it would have ended. It does so, too, where the first stretch cost
+//! more than before. Steps know nothing of threads, so that there are the same bits on any number
+//! of them.
 
-use super::carried::Carried;
+use super::carried::{ByElement, Carried};
 use super::{DYNAMIC, Options, Session};
 use crate::analysis::system::System;
-use crate::analysis::time::{dynamics, options};
+use crate::analysis::time::{dynamics, options, ranks};
 use crate::analysis::trajectory::{Ended, EnergyFlow, Trajectory};
 use crate::analysis::watch::Watch;
 use crate::model::Model;
@@ -37,8 +38,8 @@ use std::time::Duration;
 const STRETCHES: u32 = 16;
 /// Looks at all mechanisms together within a stretch, beside its outputs.
 const LOOKS: u32 = 64;
-/// Part of a stretch within which two times are one.
-const SAME_TIME: f64 = 1e-9;
+/// Operations beside those of evaluations in a step, over the evaluations in it.
+const OPERATIONS_OF_A_STEP: usize = 400;
 /// Time between two questions whether to stop, while other threads work.
 const WAIT: Duration = Duration::from_millis(2);
 
@@ -73,8 +74,8 @@ impl Session {
             && scene.n_mechanisms() > 1
     }
 
-    /// Takes a system apart at a state, with so much time left; `None`: its mechanisms have to do with each other after
-    /// all, or one of them has not the unknowns that it has in the whole.
+    /// Takes a system apart at a state, with so much time left; `None`: its mechanisms have to do
+    /// with each other after all, or one of them has not the unknowns that it has in the whole.
     pub(super) fn take_apart(
         &self,
         system: &System,
@@ -83,7 +84,7 @@ impl Session {
     ) -> Option<Mechanisms> {
         let models = self.model.apart()?;
         let mut session = Session::new(Model::default(), &self.run.name, self.options_of_parts());
-        session.carried = Some(Carried::of(system, numbers.to_vec()));
+        let state = ByElement::new(Carried::of(system, numbers.to_vec()));
         session.folders.clone_from(&self.folders);
         session.shells.clone_from(&self.shells);
         (session.pace, session.records_again) = (self.pace, true);
@@ -92,6 +93,7 @@ impl Session {
         let mut places = Places::of(&system.scene);
         let mut mechanisms = Vec::with_capacity(models.len());
         for model in models {
+            session.carried = Some(state.of(&model));
             session.model = model;
             session.is_checked = true;
             let (mut part, _) = session.prepare(DYNAMIC, &[], watch).ok()?;
@@ -178,6 +180,8 @@ impl Mechanism {
         if let Some(last) = found.rows.last() {
             self.system.numbers.copy_from_slice(last);
         }
+        let weak = std::mem::take(&mut found.weak);
+        found.passes = ranks::passes(self.system.configured(), &self.system, &weak);
         self.settings.left = found.left.take();
         if let (true, Some((name, _))) = (self.settings.is_auto(), &self.settings.left) {
             self.settings.first.clone_from(name);
@@ -191,6 +195,12 @@ fn attempted(found: &Trajectory) -> usize {
     found.stats.steps + found.stats.rejected
 }
 
+/// Returns what an integration has cost: operations of an evaluation in each step, and of the step
+/// itself.
+fn work(system: &System, found: &Trajectory) -> f64 {
+    attempted(found) as f64 * (system.operations() + OPERATIONS_OF_A_STEP) as f64
+}
+
 /// Returns whether a trajectory has nothing that speaks of the whole.
 fn is_plain(found: &Trajectory) -> bool {
     found.ended.is_none()
@@ -198,7 +208,6 @@ fn is_plain(found: &Trajectory) -> bool {
         && found.selections.is_empty()
         && found.restored.is_empty()
         && found.beyond.is_empty()
-        && found.weak.is_empty()
 }
 
 impl Mechanisms {
@@ -208,19 +217,23 @@ impl Mechanisms {
     }
 
     /// Integrates through further outputs, behind what a trajectory has, from where the whole
-    /// stands.
+    /// stands. `None`: that is the end; else all had better go on together from where the whole
+    /// stands then. `begun`: when what the trajectory has so far began.
     pub(super) fn integrate(
         mut self,
         system: &mut System,
-        (outputs, threads): (&[f64], usize),
-        together: &options::Options,
+        (begun, outputs): (f64, &[f64]),
+        (threads, max_steps): (usize, usize),
         watch: &mut dyn Watch,
         out: &mut Trajectory,
-    ) {
+    ) -> Option<f64> {
         let before = std::mem::take(&mut out.energy);
         let from = system.numbers[Layout::TIME];
-        for stretch in stretches(from, outputs) {
-            let max_steps = together.max_steps.saturating_sub(attempted(out));
+        let pace = work(system, out) / (from - begun);
+        let mut again = None;
+        for (k, stretch) in stretches(from, outputs).into_iter().enumerate() {
+            let reached = system.numbers[Layout::TIME];
+            let max_steps = max_steps.saturating_sub(attempted(out));
             for mechanism in &mut self.0 {
                 mechanism.settings.max_steps = max_steps;
             }
@@ -233,15 +246,21 @@ impl Mechanisms {
             }
             let steps: usize = found.iter().map(attempted).sum();
             if steps > max_steps || !found.iter().all(is_plain) {
-                let reached = system.numbers[Layout::TIME];
-                let rest = &outputs[outputs.partition_point(|t| *t <= reached)..];
-                out.energy = before.followed_by(&self.energy());
-                dynamics::go_on(system, rest, together, watch, out);
-                return;
+                again = Some(reached);
+                break;
             }
             self.merge((system, &stretch), &found, watch, out);
+            let parts = self.0.iter().zip(&found);
+            let done: f64 = parts.map(|(part, found)| work(&part.system, found)).sum();
+            let now = system.numbers[Layout::TIME];
+            if k == 0 && done > pace * (now - reached) {
+                again = Some(now);
+                break;
+            }
         }
         out.energy = before.followed_by(&self.energy());
+        out.energy.spent /= threads.max(1) as u32;
+        again
     }
 
     /// Integrates all through some times, on some threads.
@@ -287,7 +306,6 @@ impl Mechanisms {
                 }
             }
         });
-        drop(work);
         found
     }
 
@@ -321,6 +339,7 @@ impl Mechanisms {
             out.events += found.events;
             out.limited.events += found.limited.events;
             out.limited.outputs += found.limited.outputs;
+            out.passes.extend_from_slice(&found.passes);
             out.last_step = found.last_step.or(out.last_step);
             events.extend_from_slice(&found.event_times);
             for (t, name, why) in &found.methods {
@@ -345,36 +364,57 @@ impl Mechanisms {
     }
 }
 
-/// Divides what is left into stretches: their times, and which of them are outputs.
+/// Divides what is left into stretches: their times, and which of them are outputs. Where stretches
+/// end, as steps do, outputs have no say in.
 fn stretches(from: f64, outputs: &[f64]) -> Vec<Vec<(f64, bool)>> {
     let Some(&end) = outputs.last() else {
         return Vec::new();
     };
     let n = STRETCHES * LOOKS;
-    let near = SAME_TIME * (end - from) / f64::from(STRETCHES);
-    let at = |k: u32| from + (end - from) * f64::from(k) / f64::from(n);
+    let mut outputs = outputs.iter().copied().peekable();
     let mut stretches = vec![Vec::new()];
-    let mut add = |time: (f64, bool), ends: bool| {
-        if let Some(last) = stretches.last_mut() {
-            last.push(time);
+    for k in 1..n {
+        let look = from + (end - from) * f64::from(k) / f64::from(n);
+        let mut times = Vec::new();
+        while let Some(t) = outputs.next_if(|t| *t < look) {
+            times.push((t, true));
         }
-        if ends {
+        times.push((look, outputs.next_if_eq(&look).is_some()));
+        if let Some(last) = stretches.last_mut() {
+            last.extend(times);
+        }
+        if k % LOOKS == 0 {
             stretches.push(Vec::new());
         }
-    };
-    let mut outputs = outputs.iter().copied().peekable();
-    for k in 1..n {
-        let look = at(k);
-        while let Some(t) = outputs.next_if(|t| *t < look - near) {
-            add((t, true), false);
-        }
-        let is_near = |t: &f64| *t <= look + near;
-        let is_output = outputs.peek().is_some_and(is_near);
-        add(
-            (outputs.next_if(is_near).unwrap_or(look), is_output),
-            k % LOOKS == 0,
-        );
     }
-    outputs.for_each(|t| add((t, true), false));
+    if let Some(last) = stretches.last_mut() {
+        last.extend(outputs.map(|t| (t, true)));
+    }
     stretches
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretches_end_at_the_same_times_whatever_the_outputs_which_all_have_once() {
+        let ends = |outputs: &[f64]| -> Vec<f64> {
+            let stretches = stretches(0.3, outputs);
+            let times: Vec<(f64, bool)> = stretches.concat();
+            assert!(times.windows(2).all(|pair| pair[0].0 < pair[1].0));
+            let found = times.iter().filter(|time| time.1).map(|time| time.0);
+            assert_eq!(found.collect::<Vec<f64>>(), outputs);
+            stretches.iter().filter_map(|s| Some(s.last()?.0)).collect()
+        };
+        let one = ends(&[2.0]);
+        assert_eq!((one.len(), one.last()), (STRETCHES as usize, Some(&2.0)));
+        for n in [2, 7, 64, 5000] {
+            let outputs: Vec<f64> = (1..=n)
+                .map(|k| 0.3 + 1.7 * f64::from(k) / f64::from(n))
+                .collect();
+            assert_eq!(ends(&outputs), one, "{n} outputs");
+        }
+        assert!(stretches(0.3, &[]).is_empty());
+    }
 }

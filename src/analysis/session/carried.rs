@@ -55,6 +55,47 @@ impl Carried {
     }
 }
 
+/// A state by the elements that it is of.
+pub(super) struct ByElement {
+    unknowns: BTreeMap<ElementId, Vec<(UnknownId, f64)>>,
+    parts: BTreeMap<ElementId, MarkerState<f64>>,
+    /// all that belongs to no such element
+    rest: Carried,
+}
+
+impl ByElement {
+    pub(super) fn new(mut carried: Carried) -> Self {
+        let mut unknowns: BTreeMap<ElementId, Vec<(UnknownId, f64)>> = BTreeMap::new();
+        for (id, value) in carried.values() {
+            unknowns.entry(id.element()).or_default().push((id, value));
+        }
+        carried.unknowns.clear();
+        carried.numbers.truncate(Layout::STATE);
+        carried.coordinates.clear();
+        let parts = std::mem::take(&mut carried.parts).into_iter().collect();
+        let rest = carried;
+        Self {
+            unknowns,
+            parts,
+            rest,
+        }
+    }
+
+    /// Returns the state of the elements of a model.
+    pub(super) fn of(&self, model: &Model) -> Carried {
+        let mut carried = self.rest.clone();
+        for (id, _) in model.elements() {
+            for &(unknown, value) in self.unknowns.get(&id).into_iter().flatten() {
+                carried.unknowns.push(unknown);
+                carried.numbers.push(value);
+            }
+            let part = self.parts.get(&id).map(|state| (id, *state));
+            carried.parts.extend(part);
+        }
+        carried
+    }
+}
+
 impl Session {
     /// Keeps the state of a system for the next simulation.
     pub(super) fn keep(&mut self, system: &System, numbers: Vec<f64>) {

@@ -56,17 +56,14 @@ impl Session {
         let scene = &system.scene;
         let mut configuration = system.configuration.clone();
         configuration.active = chosen;
-        let n = scene.layout.n_v as f64;
-        // looking costs n³ per state
-        if n.powi(3) * trajectory.weak.len() as f64 <= 1e9 {
-            for pass in ranks::passes(scene.within(&configuration), system, &trajectory.weak) {
-                told.push(results::RankChange {
-                    time: pass.t,
-                    change: RowChange::Passes,
-                    rows: pass.rows,
-                    place: pass.place,
-                });
-            }
+        let found = ranks::passes(scene.within(&configuration), system, &trajectory.weak);
+        for pass in found.iter().chain(&trajectory.passes) {
+            told.push(results::RankChange {
+                time: pass.t,
+                change: RowChange::Passes,
+                rows: pass.rows.clone(),
+                place: pass.place.clone(),
+            });
         }
         for (_, t, active) in &trajectory.selections {
             let before = names(&configuration.active);

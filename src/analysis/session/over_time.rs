@@ -1,5 +1,6 @@
 //! A simulation over time: from its settings to its results and its place in the record.
 
+use super::apart::Mechanisms;
 use super::companion::Integrated;
 use super::growth::Growth;
 use super::outcome::counts;
@@ -177,6 +178,7 @@ impl Session {
             }
             system.numbers.copy_from_slice(&first);
             let phase = Phase::begin();
+            let mut taken = 0.0;
             let mut follower = Follower::new(self, seen, watch, k == repeat);
             trajectory = match &mut path {
                 Some(path) => kinematics::trace(system, path, &outputs, settings, &mut follower),
@@ -184,9 +186,9 @@ impl Session {
             };
             if let Some(numbers) = trajectory.parted.take() {
                 let seen = (&mut *seen, k == repeat);
-                self.go_on_apart(
+                taken = self.go_on_apart(
                     (system, numbers),
-                    &outputs,
+                    (span.start, &outputs),
                     settings,
                     seen,
                     watch,
@@ -194,7 +196,7 @@ impl Session {
                 );
             }
             let (own, translation) = phase.elapsed();
-            let spent = trajectory.energy.spent.as_secs_f64() + seen.seconds;
+            let spent = taken + trajectory.energy.spent.as_secs_f64() + seen.seconds;
             seconds.push((own - spent).max(0.0));
             self.run.record.seconds.translate += translation;
             self.run.record.seconds.evaluate += spent;
@@ -208,27 +210,26 @@ impl Session {
         Ok((trajectory, median))
     }
 
-    /// Lets mechanisms that nothing couples go on each by itself to the end, if they can.
+    /// Lets mechanisms that nothing couples go on each by itself to the end, as far as that pays;
+    /// returns the time that it took to take them apart, in s.
     fn go_on_apart(
         &mut self,
         (system, numbers): (&mut System, Vec<f64>),
-        outputs: &[f64],
+        (begun, outputs): (f64, &[f64]),
         settings: &Options,
         (seen, is_kept): (&mut Seen, bool),
         watch: &mut dyn Watch,
         trajectory: &mut Trajectory,
-    ) {
+    ) -> f64 {
+        let phase = Phase::begin();
         let outputs = &outputs[trajectory.t.len()..];
         let t = numbers[Layout::TIME];
         let left = outputs.last().map_or(0.0, |end| end - t);
         let mechanisms = self.take_apart(system, (&numbers, left), watch);
         system.numbers.copy_from_slice(&numbers);
-        if let Some(mechanisms) = mechanisms.as_ref().filter(|_| is_kept) {
-            let n = mechanisms.len();
-            self.run.log.push(Event::Info(format!(
-                "{n} mechanisms that nothing couples have steps of their own from time {t} on"
-            )));
-        }
+        let (own, translation) = phase.elapsed();
+        self.run.record.seconds.record += own;
+        let n = mechanisms.as_ref().map_or(0, Mechanisms::len);
         let threads = self.options.threads.unwrap_or(1);
         let together = Options {
             may_part: false,
@@ -236,13 +237,21 @@ impl Session {
             ..settings.clone()
         };
         let mut follower = Follower::new(self, seen, watch, is_kept);
-        match mechanisms {
-            Some(mechanisms) => {
-                let outputs = (outputs, threads);
-                mechanisms.integrate(system, outputs, &together, &mut follower, trajectory);
-            }
-            None => dynamics::go_on(system, outputs, &together, &mut follower, trajectory),
+        let again = mechanisms.map_or(Some(t), |mechanisms| {
+            let most = (threads, together.max_steps);
+            mechanisms.integrate(system, (begun, outputs), most, &mut follower, trajectory)
+        });
+        if let Some(t) = again {
+            let rest = &outputs[outputs.partition_point(|output| *output <= t)..];
+            dynamics::go_on(system, rest, &together, &mut follower, trajectory);
         }
+        if n > 0 && is_kept {
+            let until = again.map_or(String::new(), |t| format!(" to {t}, then together again"));
+            self.run.log.push(Event::Info(format!(
+                "{n} mechanisms that nothing couples have steps of their own from time {t} on{until}"
+            )));
+        }
+        own + translation
     }
 
     /// Notes in the log which sensors were triggered, and whether one ended the run.

@@ -34,12 +34,15 @@ const STALLED_PART: f64 = 1e-8;
 /// Steps that are left, at least, where another method takes over: it starts with short steps, and
 /// each costs several of an explicit one.
 const STEPS_WORTH_A_CHANGE: f64 = 100.0;
-/// Events, attempted steps, and operations of one evaluation in each step, at least, before
-/// mechanisms that nothing couples are taken apart: recording an operation costs as much as running
-/// it some thousand times, and below some milliseconds nobody waits.
-const EVENTS_TOGETHER: usize = 32;
+/// Attempted steps, and operations of one evaluation in each step, at least, before mechanisms that
+/// nothing couples are taken apart: recording an operation costs as much as running it some
+/// thousand times, and below some milliseconds nobody waits.
 const STEPS_TOGETHER: usize = 300;
 const OPERATIONS_TOGETHER: usize = 1_000_000;
+/// Events from which on that is enough, and by how much more it has to be with fewer: then steps of
+/// each may still be those of all.
+const EVENTS_TOGETHER: usize = 32;
+const WITHOUT_EVENTS: usize = 10;
 /// Shortest way that is looked ahead for pulses, bodies and the past, as a part of the time left.
 const LEAST_HORIZON: f64 = 1e-6;
 /// The same for delays that shrink to nothing.
@@ -214,12 +217,12 @@ impl<'a> Leg<'a> {
             if switched && step.t1 < self.limits.end {
                 self.begin_anew(method, &step, anew, stepsize)?;
                 self.changes += 1;
-                if self.parts(method) {
-                    return Err(Finished::Parts);
-                }
                 if self.changes == self.limits.returns_after && !self.switches.slide() {
                     return Err(Finished::Eased);
                 }
+            }
+            if self.parts(method) && step.t1 < self.limits.end {
+                return Err(Finished::Parts);
             }
             let left = (self.limits.end - method.t()) / step.h;
             if self.limits.may_change && method.stiff() && left > STEPS_WORTH_A_CHANGE {
@@ -229,15 +232,18 @@ impl<'a> Leg<'a> {
         Ok(())
     }
 
-    /// Returns whether mechanisms that nothing couples had better go on each by itself: all have
-    /// begun anew at the events of each so often that it has cost what taking them apart does.
+    /// Returns whether mechanisms that nothing couples had better go on each by itself: that all
+    /// take the steps of each, and begin anew at its events, has cost what taking them apart does.
     fn parts(&self, method: &dyn Method<System>) -> bool {
         // outputs cost evaluations, but no step
         let steps = self.out.stats.steps + self.out.stats.rejected + attempted(method);
+        let more = match self.out.events >= EVENTS_TOGETHER {
+            true => 1,
+            false => WITHOUT_EVENTS,
+        };
         self.limits.may_part
-            && self.out.events >= EVENTS_TOGETHER
-            && steps >= STEPS_TOGETHER
-            && steps.saturating_mul(self.system.operations()) >= OPERATIONS_TOGETHER
+            && steps >= more * STEPS_TOGETHER
+            && steps.saturating_mul(self.system.operations()) >= more * OPERATIONS_TOGETHER
     }
 
     /// Starts the method on the branches that hold at the state.

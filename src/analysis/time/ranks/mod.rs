@@ -16,7 +16,7 @@ mod turning;
 mod valley;
 
 pub use locked::{Lock, locked};
-pub use passes::{Pass, passes};
+pub use passes::passes;
 use selection::{Rows, margin, norm, select};
 use sides::Loop;
 pub use sides::{Side, Sides};

@@ -11,6 +11,7 @@ use super::valley::Valley;
 use super::{Gradients, Rows, active, gradients, margin, norm, place, weakest};
 use crate::analysis::start::assemble;
 use crate::analysis::system::System;
+use crate::analysis::trajectory::Pass;
 use crate::expr::program::{Program, Work};
 use crate::numeric::control::worst;
 use crate::scene::configuration::Configured;
@@ -38,22 +39,16 @@ const MAX_PIECES: f64 = 64.0;
 /// Time between two passes, at least, as a part of the duration.
 const LEAST_DISTANCE: f64 = 1e-4;
 
-/// A position at which rows become dependent while the mechanism passes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Pass {
-    /// time
-    pub t: f64,
-    /// rows that depend on others there and not nearby
-    pub rows: Vec<String>,
-    /// coordinates there: (name, value), those of the loops concerned first
-    pub place: Vec<(String, f64)>,
-}
+/// Cubes of the velocities, summed over the states, up to which passes are looked for: some seconds.
+const MOST_WORK: f64 = 1e9;
 
 /// Finds the positions between accepted states of a system at which rows become dependent, those
 /// that take part in the configuration of `scene`. `states`: numbers of states in order; `None`
-/// separates states that do not follow on.
+/// separates states that do not follow on. Where so many states of so large a system would take too
+/// long, none is looked for.
 pub fn passes(scene: Configured<'_>, system: &System, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
-    if states.is_empty() {
+    let work = (scene.layout.n_v as f64).powi(3) * states.len() as f64;
+    if states.is_empty() || work > MOST_WORK {
         return Vec::new();
     }
     let Some((search, mut measured)) = Search::new(scene, system, states) else {
