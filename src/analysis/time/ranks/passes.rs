@@ -39,7 +39,7 @@ const MAX_PIECES: f64 = 64.0;
 /// Time between two passes, at least, as a part of the duration.
 const LEAST_DISTANCE: f64 = 1e-4;
 
-/// Cubes of the velocities, summed over the states, up to which passes are looked for: some seconds.
+/// Cubes of the velocities, summed over states, up to which passes are looked for: some seconds.
 const MOST_WORK: f64 = 1e9;
 
 /// Finds the positions between accepted states of a system at which rows become dependent, those
