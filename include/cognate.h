@@ -370,6 +370,10 @@ void cognate_options_piecewise(CognateOptions *options, bool wanted);
 // limit. Where one is reached the status is COGNATE_STATUS_LIMIT.
 void cognate_options_limit(CognateOptions *options, double seconds, size_t steps);
 
+// Integrates mechanisms that nothing couples on so many threads, which change no result; 0: on the
+// one that calls.
+void cognate_options_threads(CognateOptions *options, size_t threads);
+
 // Gives options back; sessions made with them go on.
 void cognate_options_free(CognateOptions *options);
 

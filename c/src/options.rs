@@ -191,6 +191,18 @@ pub unsafe extern "C" fn cognate_options_limit(
     }
 }
 
+/// Integrates mechanisms that nothing couples on so many threads, which change no result; 0: on the
+/// one that calls.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_threads(options: *mut CognateOptions, threads: usize) {
+    // SAFETY: NULL or a handle
+    unsafe {
+        set(options, |o| {
+            o.options.threads = (threads > 0).then_some(threads)
+        })
+    }
+}
+
 /// Gives options back; sessions made with them go on.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_options_free(options: *mut CognateOptions) {

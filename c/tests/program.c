@@ -465,6 +465,7 @@ static void a_simulation_can_be_ended(void) {
     CHECK(cognate_session_simulate(session, COGNATE_KIND_DYNAMIC, 1e6, 100, &status, &error));
     CHECK(status == COGNATE_STATUS_INTERRUPTED && calls > 0);
     cognate_session_free(session);
+    cognate_options_threads(options, 2);
     cognate_options_limit(options, 0.0, 3);
     session = cognate_session_new(model, options, &error);
     CHECK(cognate_session_simulate(session, COGNATE_KIND_DYNAMIC, 1e6, 100, &status, &error));
