@@ -33,4 +33,5 @@ mod report;
 mod results;
 mod runs;
 mod sweep;
+mod threads;
 mod written;
