@@ -280,9 +280,9 @@ impl<'m> Builder<'m> {
         let reach = reach.chain(arms).filter(|x| x.is_finite());
         let reach = reach.fold(0.0, f64::max);
         let reach = if reach > 0.0 { reach } else { 1.0 };
-        let [diagonal, gyration] = self.extents(reach);
-        let size = if diagonal > 0.0 { diagonal } else { gyration };
-        let extent = diagonal.max(gyration);
+        let [diameter, gyration] = self.extents(reach);
+        let size = if diameter > 0.0 { diameter } else { gyration };
+        let extent = diameter.max(gyration);
         let s = &mut self.scene;
         (s.size, s.length, s.extent) = (reach, reach, reach);
         if size > 0.0 {
@@ -291,9 +291,9 @@ impl<'m> Builder<'m> {
         }
     }
 
-    /// Returns the diagonal of what moves, as the dataset places it, and the largest radius of
-    /// gyration, 0 where there is none: moving the whole model does not change them. `reach`: how
-    /// far from the origin it is.
+    /// Returns the diameter of what moves, as the dataset places it, and the largest radius of
+    /// gyration, 0 where there is none: moving and turning the whole model does not change them.
+    /// `reach`: how far from the origin it is.
     fn extents(&self, reach: f64) -> [f64; 2] {
         let s = &self.scene;
         let points = s.markers.iter().filter_map(|m| {
@@ -303,12 +303,11 @@ impl<'m> Builder<'m> {
         });
         let points = points.filter(|p| p.norm().is_finite());
         let points: Vec<Vec3<f64>> = points.collect();
-        let span = |k: usize| {
-            let along = points.iter().map(|p| p.0[k]);
-            let low = along.clone().fold(f64::INFINITY, f64::min);
-            (along.fold(f64::NEG_INFINITY, f64::max) - low).max(0.0)
-        };
-        let diagonal = Vec3(std::array::from_fn(span)).norm();
+        // about the middle, so that a model that is turned keeps its size
+        let share = 1.0 / points.len().max(1) as f64;
+        let middle = (points.iter()).fold(Vec3::zero(), |sum, p| sum + p.times(share));
+        let farthest = points.iter().map(|p| (*p - middle).norm());
+        let diameter = 2.0 * farthest.fold(0.0, f64::max);
         // the rounding of places far away is no extent
         let noise = EXTENT_OF_ROUNDING * reach;
         let gyration = self.model.parts.values().map(|part| {
@@ -316,7 +315,7 @@ impl<'m> Builder<'m> {
             (largest / part.mass).sqrt()
         });
         let gyration = gyration.filter(|r| r.is_finite()).fold(0.0, f64::max);
-        [if diagonal > noise { diagonal } else { 0.0 }, gyration]
+        [if diameter > noise { diameter } else { 0.0 }, gyration]
     }
 
     /// Unknowns that functions define through each other.

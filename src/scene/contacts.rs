@@ -284,8 +284,7 @@ impl Builder<'_> {
                         let [i, j] = markers.map(|m| c.marker(m, name));
                         if let ([Some(a), Some(b)], Some(i), Some(j)) = (extents, i, j) {
                             let outlines = matches!(how, How::Question(Question::Outlines(_)));
-                            let reach =
-                                ThicknessBound::new([i, j], [a, b], a.overlap(&b, outlines));
+                            let reach = ThicknessBound::new([i, j], [a, b], outlines);
                             self.scene.thickness_bounds.push(reach);
                         }
                         let touching = match how {

@@ -13,15 +13,19 @@ pub struct ThicknessBound {
     extents: [Extent; 2],
     /// way on which they overlap, at least
     overlap: f64,
+    /// whether touches are found from near by only: farther away nothing says that one comes
+    sudden: bool,
 }
 
 impl ThicknessBound {
-    /// Of two bodies and the way on which they overlap when one goes through the other.
-    pub fn new(markers: [usize; 2], extents: [Extent; 2], overlap: f64) -> Self {
+    /// Of two bodies, both solids or both `outlines`: touches of these are found from near by only.
+    pub fn new(markers: [usize; 2], extents: [Extent; 2], outlines: bool) -> Self {
+        let [a, b] = &extents;
         Self {
             markers,
+            overlap: a.overlap(b, outlines),
             extents,
-            overlap,
+            sudden: outlines,
         }
     }
 
@@ -79,9 +83,24 @@ impl ThicknessBound {
     /// ```
     pub fn time(&self, [gap, speed, acceleration]: [f64; 3], looks: f64) -> f64 {
         let d = 0.5 * self.overlap;
-        let until = |way: f64, a: f64| 2.0 * way / (speed + (speed * speed + 2.0 * a * way).sqrt());
+        let until = |way: f64, a: f64| until(way, speed, a);
         until(gap.max(0.0) + d, acceleration).max(until(looks * d, 2.0 * acceleration))
     }
+
+    /// Returns how long a step from that motion may be before a touch can begin of which nothing
+    /// told at its beginning: the balls about the bodies are apart until then, and touches are
+    /// found from as far away as they are deep; half of that counts.
+    pub fn surprise(&self, [gap, speed, acceleration]: [f64; 3]) -> f64 {
+        match self.sudden {
+            true => until(gap.max(0.5 * self.overlap), speed, acceleration),
+            false => f64::INFINITY,
+        }
+    }
+}
+
+/// Returns the time in which a way is covered from a speed under an acceleration.
+fn until(way: f64, speed: f64, acceleration: f64) -> f64 {
+    2.0 * way / (speed + (speed * speed + 2.0 * acceleration * way).sqrt())
 }
 
 #[cfg(test)]
@@ -95,7 +114,7 @@ mod tests {
             radius: 1.0,
             thickness: 0.1,
         };
-        let reach = ThicknessBound::new([0, 1], [plate; 2], plate.overlap(&plate, false));
+        let reach = ThicknessBound::new([0, 1], [plate; 2], false);
         // 2 + 0.1 = 10 h²/2
         assert!((reach.time([2.0, 0.0, 10.0], 5.0) - 0.42f64.sqrt()).abs() < 1e-15);
         // 5·0.1 = 10 h²

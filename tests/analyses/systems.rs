@@ -3,6 +3,7 @@
 
 use crate::running;
 
+use cognate::analysis::session::state::Saved;
 use cognate::dataset::command::Script;
 use cognate::results::Status;
 use running::{
@@ -253,6 +254,38 @@ fn commands_go_on_after_a_return_and_end_after_a_halt() {
             "{action}: {:?}",
             values(&s, "time")
         );
+    }
+}
+
+/// Where a sensor returns, what it watches may be short of VALUE by rounding. It waits for the next swing all the same, by
+/// every method, and in a session that goes on from a saved state.
+#[test]
+fn a_sensor_returns_once_for_each_time_that_it_is_reached() {
+    let swing = "SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=2, J=3, FUNCTION=-69*DZ(2,3,3)\n";
+    let omega = 69.0_f64.sqrt();
+    for (method, error) in [("DOP853", 1e-8), ("RADAU5", 1e-8), ("BDF", 1e-7)] {
+        for k in 0..12 {
+            // the part begins at rest at 0.415; it passes below x once in each swing
+            let x = 0.4 * (0.5 * f64::from(k) - 2.9) / 3.0;
+            let sensor =
+                format!("SENSOR/1, FUNCTION=DZ(2,3,3)\\, VALUE={x:?}, LE, RETURN, EVALUATE=TIME\n");
+            let text = format!("{BODY}{swing}{sensor}").replacen("CM=2", "CM=2, QG=0.415,0,0", 1);
+            let mut s = session_by(&text, &["SENVAL(1)"], method, error);
+            for n in 0..5 {
+                if n == 3 {
+                    let saved = s.save();
+                    let saved = Saved::read(saved.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+                    s.reload(saved).unwrap_or_else(|e| panic!("{e}"));
+                }
+                try_to(&mut s, Analysis::Dynamic, 9.0, 7);
+                let due = ((x / 0.415).acos() + f64::from(n) * std::f64::consts::TAU) / omega;
+                let found = last(&s, "SENVAL(1)");
+                assert!(
+                    (found - due).abs() < 1e-4,
+                    "{method} {x} {n}: {found} {due}"
+                );
+            }
+        }
     }
 }
 

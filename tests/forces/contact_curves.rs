@@ -26,6 +26,38 @@ const COLUMNS: [&str; 6] = [
     "CONTACT(1,0,3,0)",
 ];
 
+/// However far away they begin, and however long a step is, two outlines do not pass through each other unseen.
+#[test]
+fn outlines_that_meet_within_a_step_bounce_by_every_method_and_request() {
+    let (mut seen, stiff) = (0, "IMPACT, STIFFNESS=2000, EXPONENT=1.5");
+    for other in ["CIRCLE, CM=4, RADIUS=0.4", "POINT, RM=4"] {
+        let touching = if other.starts_with("POINT") { 0.4 } else { 0.8 };
+        for method in ["DOP853", "RADAU5", "BDF"] {
+            for error in [1e-4, 1e-6, 1e-8] {
+                for k in 0..8 {
+                    let way = 0.5 + 0.25 * f64::from(k);
+                    let text = format!(
+                        "PART/2, QG={:?},0,0, MASS=1, CM=2, IP=1,1,1, VX=-2\nMARKER/2, PART=2, REULER=90D,90D,0\nMARKER/4, PART=2\n\
+                         MARKER/3, PART=1, REULER=90D,90D,0\nJOINT/1, TRANSLATIONAL, I=2, J=3\nGRAPHICS/1, CIRCLE, CM=1, RADIUS=0.4\n\
+                         GRAPHICS/2, {other}\nCONTACT/1, IGEOM=2, JGEOM=1, {stiff}\n",
+                        touching + way
+                    );
+                    let mut s = running::session_by(&text, &["VX(2)"], method, error);
+                    running::go(&mut s, Analysis::Dynamic, way + 0.5, 4);
+                    let speed = last(&s, "VX(2)");
+                    let off = (speed - 2.0).abs();
+                    assert!(
+                        off < 30.0 * error,
+                        "{other}, {method} at {error}, {way} away: {speed}"
+                    );
+                    seen += 1;
+                }
+            }
+        }
+    }
+    assert_eq!(seen, 144);
+}
+
 /// A disc of radius 0.2 that falls, slides and rolls over the x axis.
 fn disc(at: &str) -> String {
     format!(

@@ -574,3 +574,31 @@ fn forces_that_are_nothing_change_no_bit_and_are_read_as_zero() {
         }
     }
 }
+
+/// Markers apart along what a BUSHING leaves free make no force; the doubt says so.
+#[test]
+fn a_bushing_whose_markers_are_apart_is_doubted_by_the_force_that_this_makes() {
+    let told = |place: &str, stiffness: &str| {
+        let text = format!(
+            "BUSHING\nPART/1, GROUND\nMARKER/1, PART=1, REULER=0,90D,0\nPART/2, MASS=1, CM=2, IP=1,1,1, QG={place}\n\
+             MARKER/2, PART=2\nBUSHING/1, I=2, J=1, K={stiffness}, KT=1,1,1\nEND\n"
+        );
+        let all = cognate::dataset::read_text(&text).diagnostics.into_iter();
+        let mut all = all.filter(|d| d.message.contains("its markers are"));
+        all.next().map(|d| d.message)
+    };
+    // z of the J marker is −y of ground
+    for (place, stiffness, force) in [
+        ("0,2,0", "5,5,0", None),
+        ("0,2,0", "5,5,3", Some("6")),
+        ("3,0,0", "5,0,0", Some("15")),
+        ("3,0,0", "0,7,7", None),
+        ("3,4,0", "2,9,2", Some("10")),
+    ] {
+        let found = told(place, stiffness);
+        let free = || "along what it leaves free".to_owned();
+        let ending = force.map_or_else(free, |f| format!("so that it begins with a force of {f}"));
+        let fits = found.as_ref().is_some_and(|f| f.ends_with(&ending));
+        assert!(fits, "{place} {stiffness}: {found:?} {ending:?}");
+    }
+}

@@ -156,6 +156,37 @@ fn a_turn_that_an_initial_condition_asks_for_is_none_of_assembly() {
     assert!(warnings.is_empty(), "{warnings:?}");
 }
 
+/// The angle of a joint begins within half a turn; a spring that was to be wound up is not, and that is told.
+#[test]
+fn whole_turns_of_initial_angles_are_told() {
+    let tau = std::f64::consts::TAU;
+    for angle in [3.1, -3.1, 3.2, 7.0, -30.0] {
+        for (joint, who) in [
+            (
+                format!("JOINT/1, REVOLUTE, I=2, J=1, IC={angle}\n"),
+                "JOINT/1: IC",
+            ),
+            (
+                format!("JOINT/1, CYLINDRICAL, I=2, J=1, ICROT={angle}\n"),
+                "JOINT/1: IC",
+            ),
+            (
+                format!(
+                    "JOINT/1, REVOLUTE, I=2, J=1\nMOTION/1, JOINT=1, VELOCITY, ICDISP={angle}, FUNCTION=1\n"
+                ),
+                "MOTION/1: ICDISP",
+            ),
+        ] {
+            let text = format!("PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\n{joint}");
+            let (found, warnings) = start(&text, &["AZ(2,1)"], Analysis::Dynamic);
+            near(&found, &[angle - tau * (angle / tau).round()]);
+            let told = format!("{who} is {}", cognate::results::digits_of_six(angle));
+            let is_told = warnings.iter().any(|w| w.contains(&told));
+            assert_eq!(is_told, angle.abs() > 3.15, "{joint}: {warnings:?}");
+        }
+    }
+}
+
 /// A four-bar of links 1, 2, 2 on a base of 2, drawn as a square with the crank up; JOINT/4 closes the loop.
 fn four_bar(ic: &str) -> String {
     format!(

@@ -36,6 +36,8 @@ pub(super) struct Carried {
     pub(super) turns: BTreeMap<AngleId, f64>,
     /// values of EVALUATE of sensors, by their numbers
     pub(super) sensors: BTreeMap<u32, f64>,
+    /// sensors that held when last looked at, by their numbers, and the values that they saw
+    pub(super) held: BTreeMap<u32, f64>,
     /// states of sampled systems, by the numbers of their GSE
     pub(super) samples: BTreeMap<u32, samples::Held>,
     /// the past of delayed values
@@ -125,6 +127,7 @@ impl Carried {
             coordinates,
             turns,
             sensors: sensed(&system.scene, &numbers),
+            held: system.held_sensors(),
             samples: system.recorded.samples.held(&numbers),
             past: system.recorded.external.delays.past(),
             guesses: guesses(&system.scene, &numbers),

@@ -202,6 +202,7 @@ impl Session {
             .delays
             .begin(carried.t, &carried.past);
         system.resolve().ok()?;
+        system.follow_sensors(&carried.held);
         system.begin_sensing();
         self.kept_model = kept.model;
         self.goes_on = true;

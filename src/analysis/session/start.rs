@@ -408,6 +408,7 @@ impl Session {
         let held = carried.map_or(&none, |c| &c.samples);
         system.begin_sampling(held).map_err(|d| vec![d])?;
         if mode != STATIC {
+            system.follow_sensors(carried.map_or(&BTreeMap::new(), |c| &c.held));
             system.begin_sensing();
         }
         Ok(())

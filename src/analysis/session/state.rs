@@ -199,9 +199,10 @@ fn state(c: &Carried) -> Value {
     let turns: Map<String, Value> = (c.turns.iter())
         .map(|(id, x)| (id.to_string(), number(*x)))
         .collect();
-    let sensors: Map<String, Value> = (c.sensors.iter())
-        .map(|(id, x)| (id.to_string(), number(*x)))
-        .collect();
+    let by_number = |values: &BTreeMap<u32, f64>| -> Map<String, Value> {
+        let all = values.iter();
+        all.map(|(id, x)| (id.to_string(), number(*x))).collect()
+    };
     let samples: Map<String, Value> = (c.samples.iter())
         .map(|(id, h)| {
             let held = json!({ "states": numbers(&h.states), "next": numbers(&h.next), "due": number(h.due) });
@@ -223,7 +224,8 @@ fn state(c: &Carried) -> Value {
         "at_rest": c.at_rest,
         "parts": parts,
         "turns": turns,
-        "sensors": sensors,
+        "sensors": by_number(&c.sensors),
+        "held": by_number(&c.held),
         "samples": samples,
         "past": past,
     })
@@ -245,9 +247,10 @@ fn carried(v: &Value) -> Option<Carried> {
         let one = |(id, value): (&String, &Value)| Some((id.parse().ok()?, value.clone()));
         v[key].as_object()?.iter().map(one).collect()
     };
-    let sensors: Option<BTreeMap<u32, f64>> = (ids("sensors")?.iter())
-        .map(|(id, x)| Some((*id, as_number(x)?)))
-        .collect();
+    let by_number = |key: &str| -> Option<BTreeMap<u32, f64>> {
+        let all = ids(key)?.into_iter();
+        all.map(|(id, x)| Some((id, as_number(&x)?))).collect()
+    };
     let samples: Option<BTreeMap<u32, Held>> = (ids("samples")?.iter())
         .map(|(id, h)| {
             let held = Held {
@@ -267,7 +270,9 @@ fn carried(v: &Value) -> Option<Carried> {
         at_rest: v["at_rest"].as_bool()?,
         parts,
         turns: turns(&v["turns"])?,
-        sensors: sensors?,
+        sensors: by_number("sensors")?,
+        // older files say nothing of it
+        held: by_number("held").unwrap_or_default(),
         samples: samples?,
         past: past.collect::<Option<_>>()?,
         guesses: BTreeMap::new(),

@@ -7,7 +7,7 @@
 use crate::analysis::direction::{Axis, Direction};
 use crate::analysis::look::Look;
 use crate::analysis::quantity::{length, short};
-use crate::analysis::start::{alignment, branch, nearby};
+use crate::analysis::start::{alignment, branch, nearby, placement};
 use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::numeric::connected::{Block, SparseRow, connected};
@@ -18,7 +18,7 @@ use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::{Equations, row_name};
 use crate::scene::mover::Mover;
-use crate::scene::programs::weights;
+use crate::scene::programs::{weights, weights_at};
 use crate::scene::{RowKind, Scene};
 use crate::space::Frame;
 use nalgebra::{DMatrix, DVector};
@@ -346,7 +346,12 @@ pub(super) fn close_while<E>(
     ignored: impl Fn(Configured<'_>, usize) -> bool,
     look: &mut dyn FnMut() -> Result<(), E>,
 ) -> Result<Closed, E> {
-    let w = weights(scene);
+    // where parts are not placed, these changes decide where they go, however far from the origin
+    let w = if placement::places(scene) {
+        weights(scene)
+    } else {
+        weights_at(scene, scene.size)
+    };
     let mover = Mover::new(scene);
     let worst = |g: &DVector<f64>| {
         (0..g.len())

@@ -5,6 +5,7 @@ use crate::analysis::direction::Axis;
 use crate::analysis::start::{branch, placement};
 use crate::analysis::warning::{AssemblyWarning, ConditionWarning};
 use crate::model::check::alignment::{self, Needed};
+use crate::model::check::angles;
 use crate::model::{ElementId, ElementKind, Model};
 use crate::physics::joint::Tie;
 use crate::physics::row::Law;
@@ -12,7 +13,7 @@ use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::space::{Mat3, Vec3};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Offsets relative to the size of the mechanism, and angles in rad, that are worth telling: typed
 /// numbers with five digits are not.
@@ -119,7 +120,30 @@ pub fn orders(scene: &Scene, model: &Model) -> Vec<ConditionWarning> {
         }
     }
     let of_view = (!of_view.is_empty()).then_some(ConditionWarning::ViewOrder { joints: of_view });
-    of_view.into_iter().chain(doubtful).collect()
+    let turns = whole_turns(model);
+    of_view.into_iter().chain(doubtful).chain(turns).collect()
+}
+
+/// Returns warnings of initial angles beyond half a turn, as angles begin within it.
+fn whole_turns(model: &Model) -> Vec<ConditionWarning> {
+    let joints = model.active(ElementKind::Joint, &model.joints);
+    let joints = joints.map(|(id, j)| (ElementKind::Joint.id(id), "IC", j.ic_rotation[0]));
+    let motions = model.active(ElementKind::Motion, &model.motions);
+    let turning = motions.filter(|(_, m)| angles::turns(model, m));
+    let turning = turning.map(|(id, m)| (ElementKind::Motion.id(id), "ICDISP", m.ic_displacement));
+    let beyond = |x: f64| x.is_finite() && x.abs() > PI * (1.0 + 1e-6);
+    joints
+        .chain(turning)
+        .filter_map(|(element, argument, angle)| {
+            let given = angle.filter(|&x| beyond(x))?;
+            Some(ConditionWarning::WholeTurns {
+                element,
+                argument,
+                given,
+                begins: given - TAU * (given / TAU).round(),
+            })
+        })
+        .collect()
 }
 
 /// Returns what assembly has turned: parts by more than a degree, unless initial conditions of

@@ -57,6 +57,12 @@ pub(in crate::analysis) fn initial_joints(scene: &Scene, model: &Model, q: &mut 
     }
 }
 
+/// Returns whether the parts of a mechanism are placed like this. Contacts of curves go where their
+/// bodies are: there coordinates decide.
+pub(super) fn places(scene: &Scene) -> bool {
+    (1..=MAX_VELOCITIES).contains(&scene.layout.n_v) && scene.cams.is_empty()
+}
+
 /// Moves `q` to the positions nearest to the dataset. `joints`: IC of joints count. False: the
 /// mechanism is not one that is placed like this, or no step led anywhere.
 pub fn settle(
@@ -67,9 +73,7 @@ pub fn settle(
     x: &[f64],
     joints: bool,
 ) -> bool {
-    let l = scene.layout;
-    // contacts of curves go where their bodies are: coordinates decide
-    if l.n_v == 0 || l.n_v > MAX_VELOCITIES || !scene.cams.is_empty() {
+    if !places(&scene) {
         return false;
     }
     let asked = Asked::of(&scene, model, joints);

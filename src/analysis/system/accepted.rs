@@ -13,6 +13,18 @@ impl System {
             .begin(&self.scene.sensors, &mut self.numbers);
     }
 
+    /// Takes the sensors that held where the simulation before ended, as
+    /// [`held_sensors`](Self::held_sensors) told them there.
+    pub fn follow_sensors(&mut self, held: &BTreeMap<u32, f64>) {
+        self.recorded.sensors.follow(held);
+    }
+
+    /// Returns the sensors that held when last looked at, by their numbers, and the values that
+    /// they saw.
+    pub fn held_sensors(&self) -> BTreeMap<u32, f64> {
+        self.recorded.sensors.held(&self.scene.sensors)
+    }
+
     /// Returns the sensors that are triggered at an accepted state, by their places in
     /// `Scene::sensors`; SENVAL is new then. `switched`: a switch was located at this state.
     pub fn sense(&mut self, t: f64, y: &[f64], switched: bool) -> Vec<usize> {

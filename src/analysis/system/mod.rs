@@ -333,6 +333,12 @@ impl System {
         }
     }
 
+    /// Returns whether a touch may begin within a step of this length from where
+    /// [`longest_unseen`](Self::longest_unseen) was asked last, of which nothing told there.
+    pub fn is_surprised(&self, h: f64) -> bool {
+        !self.recorded.thickness.is_empty() && h > self.recorded.thickness.surprise
+    }
+
     /// Returns the times at which steps have to end, lest a pulse passes unseen.
     pub fn landings(&mut self, start: f64, end: f64) -> Vec<f64> {
         let recorded = &mut self.recorded;

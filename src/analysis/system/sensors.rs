@@ -9,7 +9,8 @@
 //! does from there on: it may jump there, or be short of VALUE by rounding. Within ERROR of VALUE
 //! an expression counts as there (one that turns back just before it, too). A sensor that holds at
 //! the start of a simulation evaluates its EVALUATE there, and acts only after it has not held
-//! once.
+//! once. One that has been triggered in the simulation before holds within ERROR, too: what it
+//! watches may be short of VALUE by rounding, and would pass it again at once.
 
 use super::recording::Recording;
 use crate::model::Comparison;
@@ -17,6 +18,7 @@ use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
 use crate::scene::external_inputs::{ExternalInput, SceneSensor};
 use crate::scene::programs::record;
+use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
 /// The sensors of a system.
@@ -25,10 +27,13 @@ pub struct Sensors {
     /// expressions that are watched, then those that are evaluated (zero where there is none)
     /// (2 n)
     recording: Option<Recording>,
-    /// whether each did not hold when last looked at   (n)
+    /// whether each did not hold when last looked at, or never was   (n)
     armed: Vec<bool>,
     /// places of SENVAL in the row of numbers   (n)
     places: Vec<usize>,
+    /// sensors that held where the simulation before ended, by their numbers, and the values that
+    /// they saw
+    held_before: BTreeMap<u32, f64>,
     /// whether each expression was beyond its value (0, 1) on the branches on which a method began
     /// last   (n, empty: not known)
     beyond: Vec<f64>,
@@ -80,8 +85,9 @@ impl Sensors {
         }
         Ok(Self {
             recording: Some(Recording::new(program)),
-            armed: vec![false; n],
+            armed: vec![true; n],
             places,
+            held_before: BTreeMap::new(),
             beyond: Vec::new(),
         })
     }
@@ -97,12 +103,29 @@ impl Sensors {
         self.look(numbers);
         self.beyond.clear();
         for (k, sensor) in sensors.iter().enumerate() {
-            let here = holds(sensor, self.values()[k], false);
+            let e = self.values()[k];
+            let still = |&then: &f64| e == then || holds(sensor, e, true);
+            let here =
+                holds(sensor, e, false) || self.held_before.get(&sensor.id).is_some_and(still);
             self.armed[k] = !here;
             if here {
                 self.yield_value(k, sensor, numbers);
             }
         }
+    }
+
+    /// Takes what [`held`](Self::held) told at the end of the simulation before.
+    pub(super) fn follow(&mut self, held: &BTreeMap<u32, f64>) {
+        self.held_before.clone_from(held);
+    }
+
+    /// Returns the sensors that held when last looked at, by their numbers, and the values that
+    /// they saw.
+    pub(super) fn held(&self, sensors: &[SceneSensor]) -> BTreeMap<u32, f64> {
+        let all = sensors.iter().zip(&self.armed).zip(self.values());
+        all.filter(|((_, armed), _)| !**armed)
+            .map(|((sensor, _), &e)| (sensor.id, e))
+            .collect()
     }
 
     /// Goes on from the same sensors, recorded for other rows.

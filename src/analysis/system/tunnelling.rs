@@ -14,6 +14,9 @@ pub struct ThicknessBounds {
     motions: Option<Recording>,
     /// rates of the state, for accelerations
     pub(in crate::analysis) rates: Vec<f64>,
+    /// how long a step from the last numbers may be before a touch can begin of which nothing told
+    /// at its beginning
+    pub(super) surprise: f64,
 }
 
 impl ThicknessBounds {
@@ -35,6 +38,7 @@ impl ThicknessBounds {
         Ok(Self {
             motions: Some(Recording::new(program)),
             rates: vec![0.0; n],
+            surprise: 0.0,
         })
     }
 
@@ -54,9 +58,10 @@ impl ThicknessBounds {
             .thickness_bounds
             .iter()
             .zip(motions.as_chunks::<3>().0);
-        pairs
-            .map(|(reach, &motion)| reach.time(motion, (SAMPLES + 1) as f64))
-            .filter(|h| !h.is_nan())
-            .fold(f64::INFINITY, f64::min)
+        let least = |times: &mut dyn Iterator<Item = f64>| {
+            times.filter(|h| !h.is_nan()).fold(f64::INFINITY, f64::min)
+        };
+        self.surprise = least(&mut (pairs.clone()).map(|(reach, &motion)| reach.surprise(motion)));
+        least(&mut pairs.map(|(reach, &motion)| reach.time(motion, (SAMPLES + 1) as f64)))
     }
 }

@@ -16,7 +16,8 @@
 //!
 //! Of the others many are seen to stay on their side by what the method knows of the middle of the
 //! step: where the cubic through both ends leads through the value there, it stands for g, and its
-//! control points say on which side it is.
+//! control points say on which side it is. Outlines of contacts that may meet within the step are
+//! looked for on the interpolant anyway: from afar their gap has no value.
 //!
 //! Where both branches of a function lead back to where it changes (dry friction by SIGN, at rest),
 //! the motion stays there: the switch *slides*, see `system/sliding.rs`. While it does, its value
@@ -374,7 +375,10 @@ impl Switches {
         let (y, ydot) = (method.y(), method.ydot());
         self.slopes(system, step.t1, y, ydot, 1e-4 * step.h);
         let landed = landed && self.has_landed(step);
-        if !self.is_near(step.h, landed) || self.is_clear(system, method, step, landed) {
+        let seen_from_ends = !system.is_surprised(step.h);
+        if seen_from_ends
+            && (!self.is_near(step.h, landed) || self.is_clear(system, method, step, landed))
+        {
             if landed {
                 return Verdict::Switched;
             }

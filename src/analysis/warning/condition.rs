@@ -24,6 +24,17 @@ pub enum ConditionWarning {
         /// the joints, with their numbers as they stand in the dataset; at least one
         joints: Vec<(ElementId, [f64; 2])>,
     },
+    /// an angle beyond half a turn begins within it
+    WholeTurns {
+        /// the joint or motion
+        element: ElementId,
+        /// its argument: "IC", "ICDISP"
+        argument: &'static str,
+        /// the angle in the dataset   [rad]
+        given: f64,
+        /// the angle that is measured at the start   [rad]
+        begins: f64,
+    },
     /// assembly leaves a joint another rate
     UnmetRate {
         /// the joint
@@ -70,6 +81,7 @@ impl ConditionWarning {
                 (joints.first()).map_or(ElementKind::Joint.id(0), |first| first.0)
             }
             ConditionWarning::Exchanged { element, .. }
+            | ConditionWarning::WholeTurns { element, .. }
             | ConditionWarning::UnmetRate { element, .. }
             | ConditionWarning::Unmet { element, .. }
             | ConditionWarning::UnmetContact { element, .. } => element,
@@ -99,6 +111,18 @@ impl ConditionWarning {
                 format!(
                     ": its initial condition {first}, {second} is read as \
                      velocity {first} and displacement {second}, as Adams View writes it{others}"
+                )
+            }
+            ConditionWarning::WholeTurns {
+                argument,
+                given,
+                begins,
+                ..
+            } => {
+                let [given, begins] = [given, begins].map(|x| digits_of_six(*x));
+                format!(
+                    ": {argument} is {given} rad, more than half a turn: whole turns do not count, \
+                     so that its angle begins at {begins}"
                 )
             }
             ConditionWarning::UnmetRate { found, wanted, .. } => {

@@ -11,7 +11,7 @@ pub(super) static PAGES: &[Page] = &[
     Page {
         keyword: "SIMULATE",
         summary: "Runs one simulation, from where the last one ended.",
-        text: "Give END or DURATION, and STEPS or DTOUT. STATIC without END finds one equilibrium, with END one at each output.\nDYNAMIC after STATIC starts at rest there.",
+        text: "Give END or DURATION, and STEPS or DTOUT. STATIC without END finds one equilibrium, with END one at each output.\nDYNAMIC after STATIC starts there, with the velocities of the dataset: at rest where it gives none.",
         equation: "KINEMATIC   motions determine everything: no freedom is left\nDYNAMIC     forces and masses\nSTATIC      equilibrium\nTRANSIENT   KINEMATIC without freedom, else DYNAMIC",
         effect: Effect::Solved,
         notes: &[

@@ -186,7 +186,7 @@ pub(super) static PAGES: &[Page] = &[
     Page {
         keyword: "SENSOR",
         summary: "Watches an expression and acts when it reaches a value.",
-        text: "The instant is found exactly, whatever the steps. A sensor that holds at the start of a simulation acts only after it has not held once.",
+        text: "The instant at which the expression passes VALUE is found exactly, whatever the steps; EQ acts earlier where a step ends within ERROR of VALUE. A sensor that holds at the start of a simulation acts only after it has not held once.",
         equation: "EQ: FUNCTION = VALUE      GE: FUNCTION >= VALUE      LE: FUNCTION <= VALUE",
         effect: Effect::Solved,
         notes: &[

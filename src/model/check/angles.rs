@@ -68,7 +68,7 @@ fn number(out: &mut Out, who: Who, argument: &'static str, angle: Option<f64>) {
 }
 
 /// Returns true if a motion prescribes an angle.
-fn turns(model: &Model, motion: &Motion) -> bool {
+pub(crate) fn turns(model: &Model, motion: &Motion) -> bool {
     match motion.driven {
         Driven::JointRotation(_) => true,
         Driven::JointTranslation(_) => false,

@@ -124,12 +124,18 @@ pub(super) fn beams_have_their_length(model: &Model, out: &mut Out) {
     for (&id, b) in &model.bushings {
         let stiffness = b.stiffness[..3].iter().fold(0.0_f64, |k, x| k.max(x.abs()));
         let far = apart(b.i, b.j).filter(|d| *d > WIDE_BUSHING * *all);
-        if let Some(far) = far.filter(|_| stiffness > 0.0 && b.preload[..3] == [0.0; 3]) {
-            let message = format!(
-                "its markers are {} apart, so that it begins with a force of up to {}",
-                short(far),
-                short(far * stiffness)
-            );
+        let Some(far) = far.filter(|_| stiffness > 0.0 && b.preload[..3] == [0.0; 3]) else {
+            continue;
+        };
+        if let (Some(i), Some(j)) = (marker_frame(model, b.i), marker_frame(model, b.j)) {
+            let along = j.rotation.apply_transposed(i.position - j.position);
+            let force = Vec3([0, 1, 2].map(|k| b.stiffness[k] * along.0[k])).norm();
+            let makes = if force > 1e-9 * far * stiffness {
+                format!("so that it begins with a force of {}", short(force))
+            } else {
+                "along what it leaves free".to_owned()
+            };
+            let message = format!("its markers are {} apart, {makes}", short(far));
             let who = (ElementKind::Bushing.id(id), &b.place);
             warn(out, "unlikely_magnitude", who, message);
             advise(

@@ -6,7 +6,7 @@
 //! statements themselves contradict.
 
 pub(crate) mod alignment;
-mod angles;
+pub(crate) mod angles;
 mod beginnings;
 mod between;
 mod bodies;
