@@ -38,8 +38,6 @@ use std::time::Duration;
 const STRETCHES: u32 = 16;
 /// Looks at all mechanisms together within a stretch, beside its outputs.
 const LOOKS: u32 = 64;
-/// Operations beside those of evaluations in a step, over the evaluations in it.
-const OPERATIONS_OF_A_STEP: usize = 400;
 /// Time between two questions whether to stop, while other threads work.
 const WAIT: Duration = Duration::from_millis(2);
 
@@ -195,10 +193,9 @@ fn attempted(found: &Trajectory) -> usize {
     found.stats.steps + found.stats.rejected
 }
 
-/// Returns what an integration has cost: operations of an evaluation in each step, and of the step
-/// itself.
+/// Returns what an integration has cost, in operations over the evaluations in a step.
 fn work(system: &System, found: &Trajectory) -> f64 {
-    attempted(found) as f64 * (system.operations() + OPERATIONS_OF_A_STEP) as f64
+    attempted(found) as f64 * system.operations_of_a_step() as f64
 }
 
 /// Returns whether a trajectory has nothing that speaks of the whole.

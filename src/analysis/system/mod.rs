@@ -64,6 +64,9 @@ use std::cell::OnceCell;
 use std::sync::Arc;
 use turns::Look;
 
+/// Operations beside those of evaluations in a step, over the evaluations in it, of small systems.
+const OPERATIONS_OF_A_STEP: usize = 400;
+
 /// A scene with its programs, ready to be integrated.
 #[derive(Clone, Debug)]
 pub struct System {
@@ -244,6 +247,12 @@ impl System {
     /// Returns the number of operations of one evaluation of the rate.
     pub fn operations(&self) -> usize {
         self.recorded.rate.program.n_operations()
+    }
+
+    /// Returns the number of operations of a step over the evaluations in it: those of one, and of
+    /// what else is done.
+    pub(super) fn operations_of_a_step(&self) -> usize {
+        self.operations() + OPERATIONS_OF_A_STEP
     }
 
     /// Returns the number of operations of one projection.
