@@ -233,14 +233,16 @@ fn contradictions(model: &Model, not_understood: &[Record]) -> Vec<Diagnostic> {
         // of two with one number the one that was read stands
         record.row.enter(&mut whole, record, false);
     }
+    // a part of them may be the ground
+    let part = |r: &Record| r.id.filter(|_| r.row.kind() == Some(ElementKind::Part));
+    if whole.parts.values().all(|p| !p.ground)
+        && let Some(id) = not_understood.iter().find_map(part)
+        && let Some(ground) = whole.parts.get_mut(&id)
+    {
+        ground.ground = true;
+    }
     let with = whole.contradictions();
     found.retain(|d| with.contains(d));
-    if not_understood
-        .iter()
-        .any(|r| r.row.kind() == Some(ElementKind::Part))
-    {
-        found.retain(|d| d.code != "no_ground"); // it may be that one
-    }
     found
 }
 

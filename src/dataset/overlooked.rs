@@ -1,5 +1,5 @@
-//! What stands in a file and does not count, which its author may not see: statements after END,
-//! settings that a later statement overrides, two forms of one orientation.
+//! Statements that do not count, which their author may not see: those after END, settings that a
+//! later statement overrides, the first of two forms of one orientation.
 
 use super::row::{Given, Meaning, Record};
 use super::statement;

@@ -340,7 +340,8 @@ where
     Ok(())
 }
 
-/// Returns a text that is no wider than a length in dots: of a longer one the beginning and the end.
+/// Returns a text that is no wider than a length in dots: of a longer one the beginning and the
+/// end.
 fn fitting(text: &str, letters: u32, width: i32) -> String {
     let letter = LETTER_WIDTH * DRAWN * f64::from(letters);
     let most = (f64::from(width) / letter).max(8.0) as usize;

@@ -282,9 +282,9 @@ impl Session {
         let (analysis, end, output) = resolved.map_err(|e| e.map(|d| located(d, step)))?;
         before(now, end);
         // what only the kind of simulation makes a mistake stands in the command
-        let placed = |d: Diagnostic| match d.code {
-            "freedom" => located(d, step),
-            _ => d,
+        let placed = |d: Diagnostic| match d.is(Cause::Freedom) {
+            true => located(d, step),
+            false => d,
         };
         let status = self.simulate_with(analysis, end, output, watch);
         status.map(Some).map_err(|e| e.map(placed))

@@ -26,8 +26,8 @@ use std::sync::Arc;
 const MARK: &str = "cognate_state";
 const VERSION: u64 = 1;
 
-/// Returns the name of the file for a name that SAVE or RELOAD gives, without the folder that it may
-/// have on another machine: its own ending, or `.state.json`.
+/// Returns the name of the file for a name that SAVE or RELOAD gives, without the folder that it
+/// may have on another machine: its own ending, or `.state.json`.
 pub fn file_name(name: &str) -> String {
     let name = name.trim().trim_matches('"');
     let file = match name.rsplit(['/', '\\']).next().unwrap_or_default() {

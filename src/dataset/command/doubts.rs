@@ -1,5 +1,5 @@
-//! Doubts about commands as a whole: what follows STOP, no simulation at all, settings whose numbers
-//! cannot be meant.
+//! Doubts about commands as a whole: what follows STOP, no simulation at all, settings whose
+//! numbers cannot be meant.
 
 use super::{Command, Record, Script, Step, find};
 use crate::dataset::overlooked;

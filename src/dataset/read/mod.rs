@@ -52,7 +52,7 @@ pub fn record(
 
 /// Returns the element that a statement seems to make whose head cannot be understood, without its
 /// arguments: what names it is right.
-pub fn meant(source: &Source, tokens: &Tokens, table: Table) -> Option<Record> {
+pub(crate) fn meant(source: &Source, tokens: &Tokens, table: Table) -> Option<Record> {
     let spoken = |t: &&Token| !matches!(t.kind, TokenKind::Comment | TokenKind::Carry);
     let mut words = tokens.tokens.iter().filter(spoken);
     let head = words.next()?;
