@@ -328,9 +328,12 @@ impl Growing {
         if picture && let Some(text) = summary::picture(self.overview.of(run)) {
             texts.push((own("svg"), text));
         }
+        let mut failed = None;
         for (name, text) in texts {
-            let file = self.folder.prepare(&name, &text)?;
-            files.push((name, file));
+            match self.folder.prepare(&name, &text) {
+                Ok(file) => files.push((name, file)),
+                Err(d) => failed = failed.or(Some(d)),
+            }
         }
         // their places
         self.folder.put(&files)?;
@@ -361,6 +364,9 @@ impl Growing {
                 ));
             }
         }
-        Ok(record)
+        match failed {
+            None => Ok(record),
+            Some(d) => Err(d.help("the table and the other files of the run are written")),
+        }
     }
 }

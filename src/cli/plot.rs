@@ -148,6 +148,14 @@ pub fn run(args: &Args) -> Outcome {
     if let Some(title) = &args.title {
         found.title = title.clone();
     }
+    if names.is_empty() && args.x.is_none() {
+        let (shown, all) = (found.curves.len(), all_names(&sources[0].run, None).len());
+        if shown < all {
+            remark(format!(
+                "the first {shown} of {all} columns: --y chooses others, --list tells all"
+            ));
+        }
+    }
     let plots = found.arranged(args.panels);
     let inputs = args.over.iter().chain([&args.input]);
     match &args.out {

@@ -83,7 +83,7 @@ pub struct Args {
     /// Give every column bars of error (`name±`), from a further run at a smaller request
     #[arg(long)]
     accuracy: bool,
-    /// Say nothing but mistakes
+    /// Say nothing but mistakes, and draw no picture of the table
     #[arg(long)]
     quiet: bool,
     /// Print the run record as JSON

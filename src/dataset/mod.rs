@@ -18,6 +18,7 @@ mod idle;
 pub mod lens;
 pub mod manual;
 pub mod mesh;
+mod overlooked;
 pub mod read;
 pub mod row;
 pub mod statement;
@@ -153,10 +154,16 @@ pub fn read_source(source: Source) -> Reading {
     let mut records = Vec::with_capacity(syntax.items.len());
     let mut last_part = None;
     let mut mistaken = BTreeSet::new();
+    let mut not_understood = Vec::new();
     for item in &syntax.items {
         let record = match item {
             Item::Comment(_) => None,
-            Item::Statement(tokens) => read::record(&source, tokens, TABLE, out),
+            Item::Statement(tokens) => {
+                let record = read::record(&source, tokens, TABLE, out);
+                let guess = || read::meant(&source, tokens, TABLE);
+                not_understood.extend(record.is_none().then(guess).flatten());
+                record
+            }
         };
         if let Some(record) = &record {
             if record.mistaken {
@@ -167,6 +174,7 @@ pub fn read_source(source: Source) -> Reading {
                 last_part = record.id;
             }
             adopt_marker(&source, &mut reading.model, record, last_part, out);
+            out.extend(overlooked::two_orientations(&source, record));
         }
         records.push(record);
     }
@@ -175,9 +183,11 @@ pub fn read_source(source: Source) -> Reading {
         let d = Diagnostic::warning("missing_end", "the dataset does not end with END");
         out.push(source.locate(d, Span::new(at, at)));
     }
+    out.extend(overlooked::after_end(&source, syntax.after));
+    out.extend(overlooked::given_again(&source, &records));
     extension::read(&source, &syntax, &mut reading.model, out);
     let mistaken = reading.model.with_readers_of_data(mistaken);
-    for d in reading.model.contradictions() {
+    for d in contradictions(&reading.model, &not_understood) {
         // what seems to be missing may be what was not understood
         let excused = d.element.as_ref().is_some_and(|e| mistaken.contains(e));
         if excused && !d.is(Cause::UnknownElement) {
@@ -209,6 +219,31 @@ pub fn read_source(source: Source) -> Reading {
         records,
     };
     reading
+}
+
+/// Returns what contradicts itself in a model, whatever the statements say of which nothing but
+/// their element is understood: both without these elements and with them.
+fn contradictions(model: &Model, not_understood: &[Record]) -> Vec<Diagnostic> {
+    let mut found = model.contradictions();
+    if not_understood.is_empty() {
+        return found;
+    }
+    let mut whole = model.clone();
+    for record in not_understood {
+        // of two with one number the one that was read stands
+        record.row.enter(&mut whole, record, false);
+    }
+    // a part of them may be the ground
+    let part = |r: &Record| r.id.filter(|_| r.row.kind() == Some(ElementKind::Part));
+    if whole.parts.values().all(|p| !p.ground)
+        && let Some(id) = not_understood.iter().find_map(part)
+        && let Some(ground) = whole.parts.get_mut(&id)
+    {
+        ground.ground = true;
+    }
+    let with = whole.contradictions();
+    found.retain(|d| with.contains(d));
+    found
 }
 
 /// The place of the argument that a finding is about, if it stands in its element's statement.

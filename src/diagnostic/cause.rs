@@ -20,6 +20,8 @@ pub enum Cause {
     Domain,
     /// a file or folder cannot be written
     FileUnwritable,
+    /// a simulation that needs a mechanism without freedom
+    Freedom,
     /// inertias that no body has
     ImpossibleInertia,
     /// a column cannot be computed for the rows so far
@@ -55,6 +57,7 @@ impl Cause {
             Self::CurveData => "curve_data",
             Self::Domain => "domain",
             Self::FileUnwritable => "file_unwritable",
+            Self::Freedom => "freedom",
             Self::ImpossibleInertia => "impossible_inertia",
             Self::LateColumn => "late_column",
             Self::Misaligned => "misaligned",

@@ -341,6 +341,14 @@ axis, the contact damps what does not touch, and may feed energy into what does.
 Nothing is said where one of the two is a sum of several measures, or comes from a VARIABLE.",
     },
     Code {
+        name: "constant_step",
+        summary: "STEP, STEP5 or HAVSIN runs over a number, and TIME stands elsewhere (a warning)",
+        explanation: "\
+The first argument is what runs: the step is done where it passes the second and the fourth. A number there passes nothing.
+
+    STEP(0, 0, TIME, 1, 10)              write STEP(TIME, 0, 0, 1, 10)",
+    },
+    Code {
         name: "angles_of_several_axes",
         summary: "AX, AY or AZ of the same markers stand in one expression (a warning)",
         explanation: "\

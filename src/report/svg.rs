@@ -24,6 +24,8 @@ const LETTERS: u32 = 15 * DOTS;
 const TITLE_LETTERS: u32 = 19 * DOTS;
 /// Width of an average letter of a common sans-serif face, as a part of its size.
 const LETTER_WIDTH: f64 = 0.56;
+/// Size of letters as the backend draws them, as a part of what it is asked for.
+const DRAWN: f64 = 1.0 / 1.24;
 
 /// Length of a dash and of the gap behind it, in dots.
 const DASH: u32 = 6 * DOTS;
@@ -184,8 +186,9 @@ fn draw(
         .map(|p| p.title.as_str())
         .filter(|t| !t.is_empty())
     {
+        let room = area.dim_in_pixel().0 as i32 - left as i32;
         area.draw_text(
-            title,
+            &fitting(title, TITLE_LETTERS, room),
             &("sans-serif", TITLE_LETTERS).into_font().color(&INK),
             (left as i32, 0),
         )?;
@@ -253,7 +256,9 @@ where
     .set_label_area_size(LabelAreaPosition::Right, right)
     .build_cartesian_2d(x.0..x.1, y.0..y.1)?
     .set_secondary_coord(x.0..x.1, second.0..second.1);
-    let fit = (below.dim_in_pixel().1 / (55 * DOTS)).clamp(3, 9) as usize;
+    let (wide, tall) = (below.dim_in_pixel().0 as i32, below.dim_in_pixel().1 as i32);
+    let x_label = fitting(&plot.x_label, LETTERS, wide);
+    let fit = (tall / (55 * DOTS as i32)).clamp(3, 9) as usize;
     let mut mesh = chart.configure_mesh();
     (mesh
         .light_line_style(TRANSPARENT)
@@ -264,8 +269,8 @@ where
     .set_all_tick_mark_size(5 * DOTS)
     .x_label_formatter(&|v| tick(*v, x_step))
     .y_label_formatter(&|v| tick(*v, y_step))
-    .x_desc(if named { plot.x_label.as_str() } else { "" })
-    .y_desc(plot.y_axis())
+    .x_desc(if named { x_label.as_str() } else { "" })
+    .y_desc(fitting(&plot.y_axis(), LETTERS, tall))
     .label_style(("sans-serif", LETTERS - DOTS).into_font().color(&INK))
     .axis_desc_style(("sans-serif", LETTERS).into_font().color(&INK))
     .draw()?;
@@ -275,7 +280,7 @@ where
             .y_labels(labels_of(second, fit))
             .set_all_tick_mark_size(5 * DOTS)
             .y_label_formatter(&|v| tick(*v, second_step))
-            .y_desc(other.y_axis())
+            .y_desc(fitting(&other.y_axis(), LETTERS, tall))
             .label_style(("sans-serif", LETTERS - DOTS).into_font().color(&INK))
             .axis_desc_style(("sans-serif", LETTERS).into_font().color(&INK))
             .draw()?;
@@ -335,6 +340,21 @@ where
     Ok(())
 }
 
+/// Returns a text that is no wider than a length in dots: of a longer one the beginning and the
+/// end.
+fn fitting(text: &str, letters: u32, width: i32) -> String {
+    let letter = LETTER_WIDTH * DRAWN * f64::from(letters);
+    let most = (f64::from(width) / letter).max(8.0) as usize;
+    let n = text.chars().count();
+    if n <= most {
+        return text.to_owned();
+    }
+    let (before, after) = (most / 2, most - most / 2 - 1);
+    let first: String = text.chars().take(before).collect();
+    let last: String = text.chars().skip(n - after).collect();
+    format!("{first}…{last}")
+}
+
 /// Draws the names of curves in rows from `top` on; returns the end of the rows.
 fn draw_legend<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
@@ -352,7 +372,10 @@ where
         .into_font()
         .color(&INK)
         .pos(Pos::new(HPos::Left, VPos::Center));
-    for (name, colour) in names.iter().zip(COLOURS.iter().cycle()) {
+    let widest = right - left - swatch - gap;
+    let names = names.iter().map(|name| fitting(name, LETTERS, widest));
+    let is_empty = names.len() == 0;
+    for (name, colour) in names.zip(COLOURS.iter().cycle()) {
         let width =
             swatch + gap + (LETTER_WIDTH * f64::from(LETTERS) * name.chars().count() as f64) as i32;
         if at > left && at + width > right {
@@ -363,14 +386,10 @@ where
             [(at, middle), (at + swatch, middle)],
             colour.stroke_width(3 * DOTS),
         ))?;
-        area.draw_text(name, &style, (at + swatch + gap, middle))?;
+        area.draw_text(&name, &style, (at + swatch + gap, middle))?;
         at += width + 2 * gap;
     }
-    Ok(if names.is_empty() {
-        top
-    } else {
-        y + line + gap
-    })
+    Ok(if is_empty { top } else { y + line + gap })
 }
 
 /// Returns the number of labels to ask for where so many fit beside a range: more where the places
@@ -405,21 +424,17 @@ pub(super) fn tick(value: f64, step: f64) -> String {
             text.to_owned()
         }
     };
-    // one place more than the step has, for ticks at halves of it; trailing zeros are cut
-    let (size, finest) = (
-        value.abs().log10().floor() as i32,
-        step.log10().floor() as i32 - 1,
-    );
-    if (-4..6).contains(&size) && finest >= -9 {
-        return trim(&format!(
-            "{value:.*}",
-            usize::try_from(-finest).unwrap_or(0)
-        ));
+    // one place more than the step has, for ticks at halves of it, as far as a number has digits;
+    // trailing zeros are cut
+    let size = value.abs().log10().floor() as i32;
+    let finest = (step.log10().floor() as i32 - 1).max(size - 16);
+    let places = |n: i32| usize::try_from(n).unwrap_or(0);
+    // an exponent hides what a small step changes in a large number
+    let is_plain = (-4..6).contains(&size) || (6..16).contains(&size) && finest < -1;
+    if is_plain && finest >= -16 {
+        return trim(&format!("{value:.*}", places(-finest)));
     }
-    let text = format!(
-        "{value:.*e}",
-        usize::try_from(size - finest).unwrap_or(0).min(6)
-    );
+    let text = format!("{value:.*e}", places(size - finest).min(16));
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
     format!("{}e{exponent}", trim(mantissa))
 }
@@ -480,6 +495,74 @@ mod tests {
             ],
             [0.2, 2.0, 1.0]
         );
+    }
+
+    #[test]
+    fn labels_of_neighbouring_ticks_differ_however_large_their_values() {
+        for low in [
+            0.0,
+            1.0,
+            -1.0,
+            999_999.5,
+            1e6,
+            123_456_789.0,
+            -4e9,
+            2e-7,
+            1e12,
+            1e250,
+        ] {
+            for size in
+                [1e-10, 1e-7, 3e-4, 0.02, 1.0, 7e5].map(|s| s * f64::max(1e-9, f64::abs(low)))
+            {
+                let step = tick_step((low, low + size));
+                let first = (low / step).ceil() * step;
+                let labels: Vec<String> = (0..6)
+                    .map(|k| tick(first + f64::from(k) * step, step))
+                    .collect();
+                for (k, label) in labels.iter().enumerate() {
+                    assert!(
+                        !labels[..k].contains(label),
+                        "{labels:?} by {step} from {low}"
+                    );
+                    let read: f64 = label.parse().unwrap();
+                    let value = first + f64::from(k as u32) * step;
+                    assert!(
+                        (read - value).abs() < 0.1 * step,
+                        "{label} at {value} by {step}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn long_names_are_cut_in_the_middle_and_short_ones_are_not() {
+        let name = format!("begin{}end", "x".repeat(300));
+        let cut = fitting(&name, LETTERS, (WIDTH * DOTS) as i32);
+        assert!(
+            cut.starts_with("begin") && cut.ends_with("end") && cut.contains('…'),
+            "{cut}"
+        );
+        let width = LETTER_WIDTH * DRAWN * f64::from(LETTERS) * cut.chars().count() as f64;
+        assert!(width <= f64::from(WIDTH * DOTS), "{cut}");
+        assert_eq!(
+            fitting("DX(1,2)", LETTERS, (WIDTH * DOTS) as i32),
+            "DX(1,2)"
+        );
+        let curve = |name: &str| Curve {
+            name: name.into(),
+            points: vec![(0.0, 0.0), (1.0, 1.0)],
+            ..Curve::default()
+        };
+        let curves = vec![curve(&name), curve("y")];
+        let plot = Plot {
+            title: name.clone(),
+            x_label: name,
+            curves,
+            ..Plot::default()
+        };
+        let text = svg(&plot).unwrap();
+        assert!(!text.contains(&"x".repeat(200)));
     }
 
     #[test]

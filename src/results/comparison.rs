@@ -132,15 +132,22 @@ pub fn compare(a: &Run, b: &Run, interpolate: bool) -> Result<Comparison, Diagno
 }
 
 /// Returns the rows of a run that are compared: those of its tables, without those of assembly
-/// where the other run has none, as those of other programs.
+/// where the other run has none, as those of other programs, and another row stands for their time.
 fn compared_rows(run: &Run, other: &Run) -> Vec<usize> {
     let is_assembly = |kind: Option<Kind>| kind == Some(Kind::InitialConditions);
     let has_sequences = !other.sequences.is_empty();
     let has_assembly = other.sequences.iter().any(|s| is_assembly(Some(s.kind)));
     let keeps_all = has_assembly || !has_sequences;
-    let rows = run.table_rows();
-    rows.filter(|row| keeps_all || !is_assembly(run.kind_of(*row)))
-        .collect()
+    let rows: Vec<usize> = run.table_rows().collect();
+    let time = run.columns.first().map_or(&[][..], |c| &c.values);
+    let follows = |k: usize| {
+        rows.get(k + 1)
+            .is_some_and(|&next| time[next] == time[rows[k]])
+    };
+    let counts =
+        |&(k, &row): &(usize, &usize)| keeps_all || !is_assembly(run.kind_of(row)) || !follows(k);
+    let kept = rows.iter().enumerate().filter(counts);
+    kept.map(|(_, &row)| row).collect()
 }
 
 /// Returns the values of a column in some rows.
@@ -334,6 +341,26 @@ mod tests {
             assert_eq!(compare(a, b, false).unwrap().channels[0].largest, 0.0);
         }
         assert_eq!(compare(&ours, &ours, false).unwrap().outputs, 2);
+    }
+
+    #[test]
+    fn the_row_of_assembly_counts_where_no_other_stands_for_its_time() {
+        let [mut ours, mut table] = [(); 2].map(|()| Run::new("r", "t", Units::default()));
+        for (run, first) in [
+            (&mut ours, Kind::InitialConditions),
+            (&mut table, Kind::Dynamic),
+        ] {
+            run.add_column("x", "");
+            for (kind, t) in [(first, 0.0), (Kind::Dynamic, 1.0), (Kind::Dynamic, 2.0)] {
+                run.begin(kind);
+                run.push(&[t, 3.0 * t]);
+                run.end();
+            }
+        }
+        for [a, b] in [[&ours, &table], [&table, &ours]] {
+            let found = compare(a, b, false).unwrap();
+            assert_eq!((found.outputs, found.left_out), (3, [0, 0]));
+        }
     }
 
     #[test]

@@ -106,8 +106,8 @@ fn a_state_is_found_in_the_folders_of_the_run() {
     );
     let errors = mistakes_of(&mut other, &script("\nreload/system=nowhere\n"));
     assert_eq!(errors[0].code, "cannot_open");
-    let errors = mistakes_of(&mut other, &script("\nsave\n"));
-    assert_eq!(errors[0].code, "missing_argument");
+    let refused = Script::from_text("\nsave\n").unwrap_err();
+    assert_eq!(refused.first().code, "missing_argument");
 }
 
 #[test]

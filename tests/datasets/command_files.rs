@@ -82,3 +82,96 @@ fn a_path_of_another_machine_is_the_file_beside_the_command_file() {
     let file = script.model_file().expect("a name");
     assert!(file.display().to_string().contains("none"), "{file:?}");
 }
+
+/// Returns what is doubted of commands: codes, with the numbers of the lines.
+fn doubts(text: &str) -> Vec<(&'static str, usize)> {
+    let script = Script::from_text(text).unwrap_or_else(|e| panic!("{text:?}: {e}"));
+    let found = script.diagnostics.iter();
+    found.map(|d| (d.code, d.line)).collect()
+}
+
+#[test]
+fn commands_after_stop_are_told_and_notes_are_not() {
+    let head = "FILE/MODEL=a\nSIMULATE/DYNAMIC, END=1\nSTOP\n";
+    for notes in [
+        "",
+        "! SIMULATE/DYNAMIC\n",
+        "see mail / tuesday\n",
+        "run 3/4 = good\n",
+        "STOP\n",
+    ] {
+        assert_eq!(doubts(&format!("{head}{notes}")), [], "{notes:?}");
+    }
+    for lost in [
+        "SIMULATE/DYNAMIC, END=2\n",
+        "\n! more\n  sim/stat\nSTOP\n",
+        "PART/2, MASS=1\n",
+    ] {
+        let found = doubts(&format!("{head}{lost}"));
+        assert!(
+            matches!(found[..], [("beyond_end", 4..=6)]),
+            "{lost:?}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn commands_behind_the_stop_of_a_called_file_are_told() {
+    let folder = folder("stop");
+    let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).expect("a file");
+    write("inner.acf", "FILE/MODEL=a\nSIMULATE/DYNAMIC, END=1\nSTOP\n");
+    write(
+        "outer.acf",
+        "FILE/COMMAND=inner.acf\nSIMULATE/DYNAMIC, END=2\nSTOP\n",
+    );
+    write("last.acf", "FILE/COMMAND=inner.acf\nSTOP\n");
+    let codes = |name: &str| -> Vec<&str> {
+        let script = Script::read(folder.join(name)).expect("a script");
+        script.diagnostics.iter().map(|d| d.code).collect()
+    };
+    assert_eq!(codes("outer.acf"), ["beyond_end"]);
+    assert_eq!(codes("last.acf"), [""; 0]);
+    assert_eq!(codes("inner.acf"), [""; 0]);
+}
+
+#[test]
+fn commands_that_solve_nothing_are_told() {
+    let folder = folder("nothing");
+    let file = folder.join("nothing.acf");
+    for (text, is_told) in [
+        ("FILE/MODEL=a\nSTOP\n", true),
+        ("FILE/MODEL=a\nPART/2, MASS=1\n", true),
+        ("FILE/MODEL=a\nSTOP\nSIMULATE/DYNAMIC, END=1\n", true),
+        ("FILE/MODEL=a\nSIMULATE/DYNAMIC, END=1\n", false),
+        ("FILE/MODEL=a\nLINEAR/EIGENSOL\nSTOP\n", false),
+    ] {
+        std::fs::write(&file, text).expect("a file");
+        let script = Script::read(&file).expect("a script");
+        let told = script.diagnostics.iter().any(|d| d.code == "no_simulation");
+        assert_eq!(told, is_told, "{text:?}");
+    }
+}
+
+#[test]
+fn an_error_that_leaves_no_digit_is_doubted_where_a_command_asks_for_it() {
+    let ask = |error: &str| {
+        doubts(&format!(
+            "\nINTEGRATOR/GSTIFF, ERROR={error}\nSIM/DYN, END=1\n"
+        ))
+    };
+    assert_eq!(ask("1E-3"), []);
+    assert_eq!(ask("1E3"), [("unlikely_magnitude", 2)]);
+}
+
+#[test]
+fn states_are_kept_beside_the_results_whatever_folder_is_named() {
+    assert_eq!(doubts("\nSIM/DYN, END=1\nSAVE/SYSTEM=x\n"), []);
+    for folder in ["SAVE/SYSTEM=/other/x", "SAVE/SYSTEM=a\\x.sav"] {
+        let found = doubts(&format!("\nSIM/DYN, END=1\n{folder}\n"));
+        assert_eq!(found, [("no_effect", 3)], "{folder}");
+    }
+    for refused in ["SAVE/FILE=x", "RELOAD/", "SAVE/SYSTEM=\"\""] {
+        let said = Script::from_text(&format!("\nSIM/DYN, END=1\n{refused}\n"));
+        assert!(said.is_err(), "{refused}");
+    }
+}

@@ -6,6 +6,7 @@ use cognate::dataset::{self, Reading};
 use cognate::diagnostic::{Diagnostic, Severity};
 use cognate::model::*;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// A dataset with a title, a ground, a part with markers, and these statements.
 fn reading(statements: &str) -> Reading {
@@ -1104,4 +1105,42 @@ fn a_force_between_markers_between_which_nothing_acts_is_told_with_what_acts_the
             "{asked}: {found:?}"
         );
     }
+}
+
+/// The whole of a mistake is its statement: what names the element that the statement should make
+/// is right.
+#[test]
+fn a_misspelled_statement_is_told_once() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/broken");
+    let mut n = 0;
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let sound = std::fs::read_to_string(entry.expect("a file").path()).expect("a text");
+        for (k, line) in sound.lines().enumerate().skip(1) {
+            let Some((word, _)) = line.split_once('/').filter(|(w, _)| w.len() > 3) else {
+                continue;
+            };
+            let (first, rest) = word.split_at(1);
+            let swapped: String = rest.chars().rev().skip(rest.len() - 2).collect();
+            for wrong in [
+                format!("{first}{swapped}{}", &rest[2..]),
+                format!("{word}Q"),
+            ] {
+                if wrong == word {
+                    continue;
+                }
+                let text = sound.replacen(line, &line.replacen(word, &wrong, 1), 1);
+                let found = dataset::read_text(&text).diagnostics;
+                let mut errors = found.iter().filter(|d| d.severity == Severity::Error);
+                let told = errors.next().map(|d| (d.code, d.line));
+                assert_eq!(
+                    told,
+                    Some(("unknown_statement", k + 1)),
+                    "{line} as {wrong}"
+                );
+                assert_eq!(errors.next(), None, "{line} as {wrong}");
+                n += 1;
+            }
+        }
+    }
+    assert!(n > 150, "{n}");
 }

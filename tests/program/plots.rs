@@ -136,3 +136,20 @@ fn bars_of_error_that_are_read_are_bands_and_no_columns() {
     let asked = cognate(&["plot", path(&table), "--y", "x±", "--statistics"]).out;
     assert!(asked.contains("x±"), "{asked}");
 }
+
+#[test]
+fn columns_that_are_not_shown_are_told() {
+    let names: Vec<String> = (0..20).map(|k| format!("c{k}")).collect();
+    let row = |t: f64| {
+        (0..20)
+            .map(|k| format!(",{}", t * f64::from(k)))
+            .collect::<String>()
+    };
+    let text = format!("time,{}\n0{}\n1{}\n", names.join(","), row(0.0), row(1.0));
+    let table = scratch("plot_told", "a.csv", &text);
+    let picture = table.with_file_name("a.svg");
+    let few = cognate(&["plot", path(&table), "--out", path(&picture)]);
+    assert!(few.err.contains("the first 8 of 20 columns"), "{}", few.err);
+    let one = cognate(&["plot", path(&table), "--y", "c3", "--out", path(&picture)]);
+    assert!(!one.err.contains("columns"), "{}", one.err);
+}

@@ -318,3 +318,59 @@ fn a_damaged_parquet_file_is_an_error_or_a_table_and_never_a_panic() {
         attempt(&bad);
     }
 }
+
+/// Everything else of a run is written where one of its files cannot be: its folder is a file.
+#[test]
+fn a_file_that_cannot_be_written_takes_no_other_with_it() {
+    let (folder, _) = pendulum("written_elsewhere");
+    scratch("written_elsewhere", "taken", "no folder");
+    let commands =
+        "FILE/MODEL=p\nSIMULATE/DYNAMIC, END=1, STEPS=4\nLINEAR/EIGENSOL, FILE=taken/x\nSTOP\n";
+    let file = scratch("written_elsewhere", "p.acf", commands);
+    let done = cognate(&["run", path(&file), "--out", path(&folder)]);
+    assert_eq!(done.code, 9, "{}", done.err);
+    assert!(
+        done.err.contains("taken/x.json") && done.err.contains("other files"),
+        "{}",
+        done.err
+    );
+    for (name, holds) in [
+        ("p.csv", "time,"),
+        ("p.msg", "End Simulation"),
+        ("p.json", "\"completed\""),
+    ] {
+        let text = std::fs::read_to_string(folder.join(name)).expect(name);
+        assert!(text.contains(holds), "{name}: {text}");
+    }
+    assert_eq!(
+        std::fs::read_to_string(folder.join("taken")).unwrap(),
+        "no folder"
+    );
+}
+
+#[test]
+fn commands_that_do_nothing_are_told_by_a_run() {
+    let (folder, _) = pendulum("written_nothing");
+    let run = |commands: &str| {
+        let file = scratch("written_nothing", "p.acf", commands);
+        cognate(&["run", path(&file), "--out", path(&folder)])
+    };
+    let done = run("FILE/MODEL=p\nSTOP\nSIMULATE/DYNAMIC, END=1\n");
+    assert!(
+        done.err.contains("SIMULATE/ stands after STOP"),
+        "{}",
+        done.err
+    );
+    assert!(done.err.contains("nothing is solved"), "{}", done.err);
+    let twice =
+        "FILE/MODEL=p\nSIMULATE/DYNAMIC, END=1, STEPS=2\nSAVE/SYSTEM=a/x\nSAVE/SYSTEM=b/x\n";
+    let done = run(twice);
+    assert_eq!(done.code, 4, "{}", done.err);
+    assert!(
+        done.err.contains("x.state.json is to hold two states"),
+        "{}",
+        done.err
+    );
+    let kinematic = run("FILE/MODEL=p\n\nSIMULATE/KINEMATIC, END=1\n");
+    assert!(kinematic.err.contains("p.acf:3:1"), "{}", kinematic.err);
+}

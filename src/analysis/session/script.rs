@@ -11,6 +11,7 @@ use crate::diagnostic::{Cause, Diagnostic, Error};
 use crate::disk;
 use crate::model::ElementKind;
 use crate::results::{Event, Status};
+use std::collections::BTreeMap;
 
 /// Output steps where a command gives neither STEPS nor DTOUT.
 pub const DEFAULT_STEPS: usize = 50;
@@ -86,6 +87,29 @@ fn found(session: &Session, name: &str) -> Result<Vec<u8>, Diagnostic> {
     })
 }
 
+/// Checks that states which are saved under several names have files of their own: of a name only
+/// the last part counts.
+fn states_are_apart(steps: &[Step]) -> Result<(), Error> {
+    let mut names: BTreeMap<String, &str> = BTreeMap::new();
+    for step in steps {
+        let Command::Save(Some(name)) = &step.command else {
+            continue;
+        };
+        let file = state::file_name(name);
+        let what = format!("{file} is to hold two states");
+        match names.insert(file, name) {
+            Some(other) if other != name => {
+                let d = Diagnostic::error("unfit_value", what).help(format!(
+                    "states are kept beside the results, {other} and {name} in one file"
+                ));
+                return Err(located(d, step).into());
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
 /// Returns whether a command changes the model.
 fn changes(command: &Command) -> bool {
     matches!(command, Command::Change(_) | Command::Activate { .. })
@@ -104,6 +128,7 @@ pub fn obey(
     watch: &mut dyn Watch,
 ) -> Result<Status, Error> {
     let mut status = Status::Completed;
+    states_are_apart(steps)?;
     let changed = steps.iter().filter_map(|s| match &s.command {
         Command::Change(record) if record.row.kind() == Some(ElementKind::Variable) => record.id,
         _ => None,
@@ -256,7 +281,13 @@ impl Session {
         let resolved = simulate.resolved(now);
         let (analysis, end, output) = resolved.map_err(|e| e.map(|d| located(d, step)))?;
         before(now, end);
-        self.simulate_with(analysis, end, output, watch).map(Some)
+        // what only the kind of simulation makes a mistake stands in the command
+        let placed = |d: Diagnostic| match d.is(Cause::Freedom) {
+            true => located(d, step),
+            false => d,
+        };
+        let status = self.simulate_with(analysis, end, output, watch);
+        status.map(Some).map_err(|e| e.map(placed))
     }
 
     /// Obeys LINEAR.

@@ -13,7 +13,7 @@ use crate::analysis::verify::driving::driving;
 use crate::analysis::verify::massless::massless;
 use crate::analysis::warning::{RunWarning, Warning};
 use crate::analysis::watch::Watch;
-use crate::diagnostic::{Diagnostic, Error, Severity};
+use crate::diagnostic::{Cause, Diagnostic, Error, Severity};
 use crate::expr::program::Program;
 use crate::model::ElementKind;
 use crate::results::{Event, Kind, Status};
@@ -305,7 +305,7 @@ impl Session {
 fn has_freedom(freedom: usize) -> Diagnostic {
     let what =
         format!("a kinematic simulation needs a mechanism without freedom; this one has {freedom}");
-    Diagnostic::error("freedom", what)
+    Diagnostic::error(Cause::Freedom, what)
         .help("drive the remaining freedoms by MOTION, or simulate dynamically")
 }
 

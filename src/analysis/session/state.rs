@@ -26,12 +26,14 @@ use std::sync::Arc;
 const MARK: &str = "cognate_state";
 const VERSION: u64 = 1;
 
-/// Returns the name of the file for a name that SAVE or RELOAD gives: its own ending, or
-/// `.state.json`.
+/// Returns the name of the file for a name that SAVE or RELOAD gives, without the folder that it
+/// may have on another machine: its own ending, or `.state.json`.
 pub fn file_name(name: &str) -> String {
     let name = name.trim().trim_matches('"');
-    let file = std::path::Path::new(name).file_name();
-    let file = file.map_or_else(|| "saved".into(), |f| f.to_string_lossy().into_owned());
+    let file = match name.rsplit(['/', '\\']).next().unwrap_or_default() {
+        "" | "." | ".." => "saved".to_owned(),
+        file => file.to_owned(),
+    };
     if std::path::Path::new(&file).extension().is_some() {
         file
     } else {

@@ -204,8 +204,8 @@ pub(super) static COMMANDS: &[&dyn Interpret] = &[
         argument "PINPUT" (Kind::Id, pinput);
         argument "POUTPUT" (Kind::Id, poutput);
     }, |linear, _| Ok(Command::Linear(linear))),
-    command!("SAVE", Option<String>, others: Dropped, { system "SYSTEM" (); }, |system, _| Ok(Command::Save(system))),
-    command!("RELOAD", Option<String>, others: Dropped, { system "SYSTEM" (); }, |system, _| Ok(Command::Reload(system))),
+    command!("SAVE", Option<String>, others: Dropped, { system "SYSTEM" (); }, |system, record| named(system, record).map(Command::Save)),
+    command!("RELOAD", Option<String>, others: Dropped, { system "SYSTEM" (); }, |system, record| named(system, record).map(Command::Reload)),
     print!("INFO"),
     print!("SHOW"),
     print!("TIME"),
@@ -213,6 +213,17 @@ pub(super) static COMMANDS: &[&dyn Interpret] = &[
     print!("MENU"),
     command!("STOP", (), others: Dropped, {}, |(), _| Ok(Command::Stop)),
 ];
+
+/// The file of SAVE or RELOAD, without which there is nothing to do.
+fn named(system: Option<String>, record: &Record) -> Result<Option<String>, Box<Diagnostic>> {
+    let bare = |s: &String| !s.trim_matches(['"', ' ']).is_empty();
+    let is_named = system.as_ref().is_some_and(bare);
+    let missing = || Diagnostic::error("missing_argument", "SYSTEM = file is needed");
+    match is_named {
+        true => Ok(system),
+        false => Err(Box::new(missing().element(record.element()))),
+    }
+}
 
 /// A command that asks for a print.
 fn show((): (), record: &Record) -> Result<Command, Box<Diagnostic>> {

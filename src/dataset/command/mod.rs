@@ -7,6 +7,7 @@
 //! on the first two lines.
 
 mod apply;
+mod doubts;
 mod interpret;
 mod message_log;
 mod unread;
@@ -175,7 +176,9 @@ impl Script {
     /// # Errors
     /// Every mistake with its place. Warnings are in [`Script::diagnostics`].
     pub fn read(path: impl AsRef<Path>) -> Result<Script, Error> {
-        read_called(path.as_ref(), 0)
+        let mut script = read_called(path.as_ref(), 0)?;
+        script.doubt_the_whole();
+        Ok(script)
     }
 
     /// Reads commands from a text.
@@ -325,26 +328,30 @@ fn of_source(source: &Source) -> Result<Script, Error> {
                 .replace_range(span.start..span.end, &" ".repeat(span.end - span.start));
         }
     }
-    end_at_stop(&mut body.text);
     let mut out = Vec::new();
+    if let Some(end) = end_of_stop(&body.text) {
+        let after = Span::new(end, body.text.len());
+        out.extend(doubts::after_stop(&body, after));
+        body.text.truncate(end);
+    }
     let syntax = syntax::script(&body, &mut out);
     take_steps(&body, &syntax, &mut script, &mut out);
     finish(script, out)
 }
 
-/// Leaves out what follows a line that says STOP: notes and whatever else, which need not be
-/// commands.
-fn end_at_stop(text: &mut String) {
+/// Returns where a line that says STOP ends: what follows are notes and whatever else, which need
+/// not be commands.
+fn end_of_stop(text: &str) -> Option<usize> {
     let (mut at, mut continued) = (0, false);
     for line in text.split_inclusive('\n') {
         at += line.len();
         let command = line.split('!').next().unwrap_or_default().trim();
         if command.eq_ignore_ascii_case("STOP") && !continued {
-            text.truncate(at);
-            return;
+            return Some(at);
         }
         continued = command.ends_with('&');
     }
+    None
 }
 
 fn finish(mut script: Script, mut out: Vec<Diagnostic>) -> Result<Script, Error> {
@@ -379,6 +386,8 @@ fn take_steps(source: &Source, syntax: &Syntax, script: &mut Script, out: &mut V
         };
         let doubt = unread::arguments(&command, &others);
         out.extend(doubt.map(|d| source.locate(d, span)));
+        let doubted = doubts::of_settings(&command).into_iter();
+        out.extend(doubted.map(|d| source.locate(d, span)));
         if let Command::File {
             model,
             output_prefix,

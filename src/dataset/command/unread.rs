@@ -42,6 +42,10 @@ pub(super) fn arguments(command: &Command, others: &[String]) -> Option<Diagnost
             let why = "those of the command file that COMMAND names are taken";
             ("FILE", given(&all), why)
         }
+        Command::Save(Some(name)) if name.contains(['/', '\\']) => {
+            let why = "states are kept beside the results";
+            ("SAVE", vec!["the folder of SYSTEM"], why)
+        }
         Command::File { .. }
         | Command::Change(_)
         | Command::Linear(_)

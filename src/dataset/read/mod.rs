@@ -50,6 +50,38 @@ pub fn record(
     Some(record)
 }
 
+/// Returns the element that a statement seems to make whose head cannot be understood, without its
+/// arguments: what names it is right.
+pub(crate) fn meant(source: &Source, tokens: &Tokens, table: Table) -> Option<Record> {
+    let spoken = |t: &&Token| !matches!(t.kind, TokenKind::Comment | TokenKind::Carry);
+    let mut words = tokens.tokens.iter().filter(spoken);
+    let head = words.next()?;
+    let text = |t: &Token| source.slice(t.span);
+    let row = match (table.find)(text(head)) {
+        Meaning::One(k) => table.rows[k],
+        Meaning::Several(_) => return None,
+        Meaning::Unknown => {
+            let known: Vec<String> = table.rows.iter().map(|r| canonical(r.keyword())).collect();
+            let near = near_names(text(head), known.iter().map(String::as_str));
+            let k = known
+                .iter()
+                .position(|k| near.first().is_some_and(|n| n == k))?;
+            table.rows[k]
+        }
+    };
+    let number = words.find(|t| t.kind == TokenKind::Atom)?;
+    let id = text(number).parse().ok().filter(|_| row.numbered())?;
+    Some(Record {
+        row,
+        id: Some(id),
+        given: Vec::new(),
+        kept: Vec::new(),
+        place: Place::default(),
+        head: head.span,
+        mistaken: true,
+    })
+}
+
 struct Reader<'a> {
     source: &'a Source,
     /// comments left out
@@ -299,6 +331,9 @@ impl<'a> Reader<'a> {
         if !near.is_empty() {
             d = d.help(format!("did you mean {}?", near.join(" or ")));
         }
+        if let Some(number) = self.cut_by_comma(name) {
+            d = d.help(format!("a decimal mark is a point: {number}"));
+        }
         d = if known.is_empty() {
             d.help(format!("{keyword} takes no arguments"))
         } else {
@@ -307,6 +342,21 @@ impl<'a> Reader<'a> {
         let d = self.source.locate(self.about(d), name.span);
         self.out.push(d);
         Err(Reported)
+    }
+
+    /// Returns the number that was meant where digits follow a comma behind a whole number: `2.5`
+    /// of `2,5`.
+    fn cut_by_comma(&self, after: Token) -> Option<String> {
+        let text = &self.source.text;
+        let digits = |t: &str| !t.is_empty() && t.bytes().all(|b| b.is_ascii_digit());
+        let before = text.get(..after.span.start)?.strip_suffix(',')?;
+        let from = before.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+        let whole = &before[from..];
+        let is_value = before[..from].ends_with(['=', '-', '+', '(', '*', '/', ' ']);
+        let word = self.text(after);
+        let behind = word.trim_start_matches(|c: char| c.is_ascii_digit());
+        let part = &word[..word.len() - behind.len()];
+        (digits(whole) && digits(part) && is_value).then(|| format!("{whole}.{part}"))
     }
 
     /// Bare keywords of which only one may be given.

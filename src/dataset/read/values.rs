@@ -233,9 +233,29 @@ impl Reader<'_> {
                 .is_some_and(|t| t.kind == TokenKind::Quoted);
             if next == self.at || next >= self.tokens.len() || !quoted && self.begins_argument(next)
             {
+                self.cut_by_abbreviation(next);
                 return Ok(all);
             }
             self.at = next;
+        }
+    }
+
+    /// Doubts a shortened keyword that ends a list of bare texts: it may be one of them.
+    fn cut_by_abbreviation(&mut self, next: usize) {
+        let Some(&t) = self.tokens.get(next) else {
+            return;
+        };
+        let word = self.text(t);
+        if let (false, Meaning::One(k)) = (self.is_assignment(next), self.argument_meant(word))
+            && let Some(keyword) = self.arguments().nth(k).map(Argument::keyword)
+            && !keyword.eq_ignore_ascii_case(word)
+        {
+            let what = format!("`{word}` is taken as {keyword}, and no longer as one of the texts");
+            let d = Diagnostic::warning("ambiguous_argument", what).help(format!(
+                "a text that looks like a keyword stands in quotation marks: \"{word}\""
+            ));
+            let d = self.source.locate(self.about(d), t.span);
+            self.out.push(d);
         }
     }
 

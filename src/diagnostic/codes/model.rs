@@ -69,6 +69,26 @@ END as the last statement shows that the file is complete. Without it, it may ha
     END                         as the last line",
     },
     Code {
+        name: "beyond_end",
+        summary: "statements after END, or commands after STOP, which nothing reads",
+        explanation: "\
+A dataset ends with END and the commands end with STOP, also where another command file calls them: what follows is not read. Put END
+last when statements are added at the end of a file, and STOP last among all commands.
+
+    END
+    SFORCE/7, ROTATIONAL, I=21, J=10, FUNCTION=2     is not in the model: put it above END",
+    },
+    Code {
+        name: "no_simulation",
+        summary: "commands that simulate nothing",
+        explanation: "\
+A command file without SIMULATE and LINEAR reads the model and ends: its table has no rows.
+
+    FILE/MODEL=crank
+    SIMULATE/DYNAMIC, END=1, STEPS=100               is what is missing
+    STOP",
+    },
+    Code {
         name: "unknown_statement",
         summary: "a statement or kind of element that does not exist",
         explanation: "\

@@ -36,7 +36,7 @@ A SENSOR with HALT or RETURN was triggered. That is no failure: the model asked 
         summary: "a function has no finite value",
         explanation: "\
 The message names the function, and the operation with the numbers it met, where one is to blame: SQRT of a negative number,
-LOG of zero, a quotient whose divisor goes to zero. A column of results that has no value at some time is empty there.
+LOG of zero, a quotient whose divisor goes to zero. A column of results that has no value at some time is NaN or inf there.
 
     SQRT(DX(1,2))          where DX may be negative: SQRT(MAX(0, DX(1,2)))
     1/DM(1,2)              grows without bound where the markers meet",

@@ -1,14 +1,15 @@
 //! Warnings about what is legal but probably not meant: degrees for radians, operators that bind
 //! otherwise than they look, marks that are read otherwise than they are typed, laws of contact
-//! that nothing can step through.
+//! that nothing can step through, steps that run over a number.
 //!
 //! Only patterns that are hardly ever right are reported. A warning says the number that was
 //! written and its meaning; its advice says the replacement. The rules stand in a file per kind:
-//! `angles.rs`, `precedence.rs`, `typing.rs`, `contact.rs`.
+//! `angles.rs`, `precedence.rs`, `typing.rs`, `contact.rs`, `steps.rs`.
 
 mod angles;
 mod contact;
 mod precedence;
+mod steps;
 mod typing;
 
 pub use angles::{degrees_in_angle, degrees_in_speed, reads_as_degrees};
@@ -34,6 +35,7 @@ pub fn lint(ast: &Ast, text: &str) -> Vec<Diagnostic> {
         doubts.extend(angles::of_node(ast, ix));
         doubts.extend(precedence::of_node(ast, ix, text));
         doubts.extend(contact::of_node(ast, ix));
+        doubts.extend(steps::of_node(ast, ix));
     }
     doubts.extend(angles::of_several_axes(ast));
     said(doubts, text)
@@ -159,6 +161,14 @@ mod tests {
                     "2**3**2",
                 ],
             ),
+            (
+                "constant_step",
+                &[
+                    "STEP(0,0,TIME,1,10)",
+                    "2*STEP5(1,TIME,0,2,1)",
+                    "HAVSIN(-1,0,0,1,TIME)",
+                ],
+            ),
             ("doubtful_number", &["1.0D-3", "2*5D+2", "1.D-3*DX(1,2)"]),
             ("doubtful_comment", &["5!*2", "5!", "TIME+3! +2"]),
             (
@@ -193,6 +203,9 @@ mod tests {
             "SIN(30D)",
             "IMPACT(DX(3,4,4),VX(3,4,4),.25,1.5,1.5,0,.1)",
             "IMPACT(-DX(1,2),-VX(2,1),1,10,1,1,1)",
+            "STEP(1.25,1,0,2,1)",
+            "STEP(TIME,0,0,1,TIME)",
+            "STEP(DX(1,2),0,0,1,TIME)",
             "IMPACT(DM(2,1),VR(2,1),1,10,1,1,1)",
             "IMPACT(DX(2,1)+DX(3,1),VX(2,1),1,10,1,1,1)",
             "IMPACT(VARVAL(1),VARVAL(2),1,10,1,1,1)",

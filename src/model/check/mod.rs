@@ -45,6 +45,13 @@ const ONLY_WARN: &[&str] = &[
     "stiffness can be resolved",
 ];
 
+/// Returns what is doubted of settings that a command changes, of which the model has nothing else.
+pub(crate) fn doubted_settings(model: &Model) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    magnitudes::errors_are_small(model, &mut found);
+    found
+}
+
 /// All rules, in the order in which they run.
 pub const RULES: &[Rule] = &[
     ("references exist", references::references_exist),

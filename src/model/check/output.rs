@@ -2,9 +2,26 @@
 
 use super::*;
 
+/// Components of a REQUEST.
+const COMPONENTS: usize = 8;
+
 pub(super) fn requests_ask_something(model: &Model, out: &mut Out) {
     for (&id, r) in &model.requests {
         let who = (ElementKind::Request.id(id), &r.place);
+        let texts = [
+            ("CNAMES", &r.cnames),
+            ("CUNITS", &r.cunits),
+            ("CLABELS", &r.clabels),
+        ];
+        let is_beyond = |all: &[String]| all.iter().skip(COMPONENTS).any(|t| !t.is_empty());
+        for (name, all) in texts.into_iter().filter(|t| is_beyond(t.1)) {
+            let what = format!(
+                "{name} has {} texts, a REQUEST {COMPONENTS} components",
+                all.len()
+            );
+            warn(out, "wrong_count", who, what);
+            at_argument(out, name);
+        }
         match &r.kind {
             RequestKind::Functions(f) if f.iter().all(Option::is_none) => {
                 warn(out, "no_effect", who, "it asks nothing".into());

@@ -117,7 +117,7 @@ impl fmt::Display for Lack {
             Lack::Entry { element, entry } => write!(f, "{element} has no entry {entry}"),
             Lack::Marker(measure) => write!(
                 f,
-                "{} names a marker that does not exist or is left out",
+                "{} names a marker that does not exist, is FLOATING or is left out",
                 measure.name()
             ),
             Lack::Component(k) => write!(f, "component {k} does not exist"),
