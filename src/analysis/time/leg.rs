@@ -34,9 +34,9 @@ const STALLED_PART: f64 = 1e-8;
 /// Steps that are left, at least, where another method takes over: it starts with short steps, and
 /// each costs several of an explicit one.
 const STEPS_WORTH_A_CHANGE: f64 = 100.0;
-/// Attempted steps, and operations in them over the evaluations in each, at least, before mechanisms
-/// that nothing couples are taken apart: recording an operation costs as much as running it some
-/// thousand times, and below some milliseconds nobody waits.
+/// Attempted steps, and operations in them over the evaluations in each, at least, before
+/// mechanisms that nothing couples are taken apart: recording an operation costs as much as running
+/// it some thousand times, and below some milliseconds nobody waits.
 const STEPS_TOGETHER: usize = 300;
 const OPERATIONS_TOGETHER: usize = 1_500_000;
 /// Events from which on that is enough, and by how much more it has to be with fewer: then steps of
