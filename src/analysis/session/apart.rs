@@ -34,8 +34,10 @@ use std::sync::{Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::Duration;
 
-/// Stretches of what is left, after each of which there are results.
+/// Stretches of what is left, after each of which there are results: more where outputs have more
+/// numbers than that in one of them, 128 MB.
 const STRETCHES: u32 = 16;
+const MOST_NUMBERS: usize = 1 << 24;
 /// Looks at all mechanisms together within a stretch, beside its outputs.
 const LOOKS: u32 = 64;
 /// Time between two questions whether to stop, while other threads work.
@@ -228,7 +230,8 @@ impl Mechanisms {
         let from = system.numbers[Layout::TIME];
         let pace = work(system, out) / (from - begun);
         let mut again = None;
-        for (k, stretch) in stretches(from, outputs).into_iter().enumerate() {
+        let size = system.numbers.len();
+        for (k, stretch) in stretches(from, outputs, size).into_iter().enumerate() {
             let reached = system.numbers[Layout::TIME];
             let max_steps = max_steps.saturating_sub(attempted(out));
             for mechanism in &mut self.0 {
@@ -293,6 +296,8 @@ impl Mechanisms {
                 stops.store(stop, Ordering::Relaxed);
                 stop
             });
+            // one that panics says nothing, but goes
+            drop(done);
             while begun > 0 {
                 match all_done.recv_timeout(WAIT) {
                     Ok(()) => begun -= 1,
@@ -361,13 +366,14 @@ impl Mechanisms {
     }
 }
 
-/// Divides what is left into stretches: their times, and which of them are outputs. Where stretches
-/// end, as steps do, outputs have no say in.
-fn stretches(from: f64, outputs: &[f64]) -> Vec<Vec<(f64, bool)>> {
+/// Divides what is left into stretches: their times, and which of them are outputs, with so many
+/// numbers each. Where stretches end, as steps do, outputs have no say in while they fit.
+fn stretches(from: f64, outputs: &[f64], size: usize) -> Vec<Vec<(f64, bool)>> {
     let Some(&end) = outputs.last() else {
         return Vec::new();
     };
-    let n = STRETCHES * LOOKS;
+    let more = outputs.len().saturating_mul(size) / (STRETCHES as usize * MOST_NUMBERS);
+    let n = (STRETCHES * LOOKS).saturating_mul(1 + more.min(1 << 16) as u32);
     let mut outputs = outputs.iter().copied().peekable();
     let mut stretches = vec![Vec::new()];
     for k in 1..n {
@@ -397,7 +403,7 @@ mod tests {
     #[test]
     fn stretches_end_at_the_same_times_whatever_the_outputs_which_all_have_once() {
         let ends = |outputs: &[f64]| -> Vec<f64> {
-            let stretches = stretches(0.3, outputs);
+            let stretches = stretches(0.3, outputs, 100);
             let times: Vec<(f64, bool)> = stretches.concat();
             assert!(times.windows(2).all(|pair| pair[0].0 < pair[1].0));
             let found = times.iter().filter(|time| time.1).map(|time| time.0);
@@ -412,6 +418,15 @@ mod tests {
                 .collect();
             assert_eq!(ends(&outputs), one, "{n} outputs");
         }
-        assert!(stretches(0.3, &[]).is_empty());
+        assert!(stretches(0.3, &[], 100).is_empty());
+    }
+
+    #[test]
+    fn many_outputs_of_many_numbers_have_more_stretches() {
+        let outputs: Vec<f64> = (1..=10_000).map(f64::from).collect();
+        let found = stretches(0.0, &outputs, 100_000);
+        let longest = found.iter().map(Vec::len).max().unwrap_or(0);
+        assert!(longest * 100_000 < 2 * MOST_NUMBERS, "{longest} times");
+        assert_eq!(found.concat().iter().filter(|t| t.1).count(), outputs.len());
     }
 }
