@@ -343,7 +343,7 @@ impl System {
     }
 
     /// Returns whether a touch may begin within a step of this length from where
-    /// [`longest_unseen`](Self::longest_unseen) was asked last, of which nothing told there.
+    /// `longest_unseen` was asked last, of which nothing told there.
     pub fn is_surprised(&self, h: f64) -> bool {
         !self.recorded.thickness.is_empty() && h > self.recorded.thickness.surprise
     }

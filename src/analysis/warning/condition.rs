@@ -30,9 +30,9 @@ pub enum ConditionWarning {
         element: ElementId,
         /// its argument: "IC", "ICDISP"
         argument: &'static str,
-        /// the angle in the dataset   [rad]
+        /// the angle in the dataset   \[rad\]
         given: f64,
-        /// the angle that is measured at the start   [rad]
+        /// the angle that is measured at the start   \[rad\]
         begins: f64,
     },
     /// assembly leaves a joint another rate
