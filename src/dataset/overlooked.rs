@@ -53,9 +53,11 @@ pub(super) fn heads(source: &Source, span: Span, is_known: impl Fn(&str) -> bool
 pub(super) fn given_again(source: &Source, records: &[Option<Record>]) -> Vec<Diagnostic> {
     let all = records.iter().flatten().filter(|r| !r.row.numbered());
     let mut settings: Vec<&Record> = all.collect();
-    let keywords: Vec<&str> = settings.iter().map(|r| r.row.keyword()).collect();
-    let stands_twice = |r: &&Record| keywords.iter().filter(|k| **k == r.row.keyword()).count() > 1;
-    settings.retain(stands_twice);
+    let mut times: BTreeMap<&str, usize> = BTreeMap::new();
+    for record in &settings {
+        *times.entry(record.row.keyword()).or_default() += 1;
+    }
+    settings.retain(|record| times.get(record.row.keyword()).is_some_and(|n| *n > 1));
     let mut first: BTreeMap<(&str, String), (&Record, &Given)> = BTreeMap::new();
     let mut found = Vec::new();
     for record in settings {
