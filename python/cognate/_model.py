@@ -54,8 +54,6 @@ class Options(TypedDict, total=False):
         Steps that an integration may try before the run ends with status ``"limit"``.
     limit : float
         Processor time after which the run ends with status ``"limit"`` [s].
-    threads : int
-        Threads for mechanisms that nothing couples (one); they change no result.
     skip : sequence of str
         Keywords of statements that are left out where they are not solved.
     zero_user : bool
@@ -74,7 +72,6 @@ class Options(TypedDict, total=False):
     frames: bool
     max_steps: int
     limit: float
-    threads: int
     skip: Sequence[str]
     zero_user: bool
     piecewise: bool
@@ -92,7 +89,6 @@ def choices_of(model: Model, options: Options) -> dict[str, Any]:
         "frames": False,
         "max_steps": None,
         "limit": None,
-        "threads": None,
         "skip": [],
         "zero_user": False,
         "piecewise": False,

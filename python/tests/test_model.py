@@ -206,11 +206,6 @@ def test_a_run_that_ends_early_is_warned_of():
         cg.Model.from_text(SWINGING).run(end=1.0, progress=True)
 
 
-def test_threads_change_no_result(slider_crank):
-    one, two = (slider_crank.run(end=0.5, steps=20, threads=n) for n in (1, 2))
-    np.testing.assert_array_equal(one["slider.X"], two["slider.X"])
-
-
 def test_models_pickle(slider_crank):
     again = pickle.loads(pickle.dumps(slider_crank))
     assert again.file == str(SLIDER_CRANK) and again.elements == slider_crank.elements
