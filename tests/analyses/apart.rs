@@ -114,6 +114,12 @@ fn apart(session: &Session) -> Option<usize> {
     told.map(|(n, _)| n.parse().expect("a number"))
 }
 
+/// How far a column of two sessions differs, at most.
+fn difference(a: &Session, b: &Session, column: &str) -> f64 {
+    let both = values(a, column).iter().zip(values(b, column));
+    both.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
 fn heights(n: usize) -> Vec<String> {
     (1..=n)
         .map(|k| format!("DZ({},1)", 1000 + 10 * k))
@@ -133,8 +139,7 @@ fn each_mechanism_has_the_answer_that_it_has_alone() {
         let mut alone = session(&text, std::slice::from_ref(column), None, 1e-8);
         go(&mut alone, Analysis::Dynamic, 1.5, 60);
         assert_eq!(apart(&alone), None);
-        let found = values(&all, column).iter().zip(values(&alone, column));
-        let off = found.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let off = difference(&all, &alone, column);
         assert!(off < 1e-6, "ball {k} is off by {off:e}");
     }
 }
@@ -183,8 +188,7 @@ fn closed_loops_against_stops_go_on_apart_with_the_energy_of_the_whole() {
     assert_eq!(apart(&parted), Some(n));
     assert_eq!(apart(&whole), None);
     for column in &columns {
-        let found = values(&parted, column).iter().zip(values(&whole, column));
-        let off = found.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let off = difference(&parted, &whole, column);
         assert!(off < 1e-5, "{column} is off by {off:e}");
     }
     let [a, b] = [&parted, &whole].map(|s| s.run.record.energy);
@@ -302,9 +306,9 @@ fn friction_that_holds_is_followed_together() {
         all
     };
     let (parted, whole) = (run(&text), run(&format!("{text}{TOGETHER}")));
+    assert_eq!(apart(&parted), Some(30));
     for column in &columns {
-        let found = values(&parted, column).iter().zip(values(&whole, column));
-        let off = found.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let off = difference(&parted, &whole, column);
         assert!(off < 1e-5, "{column} is off by {off:e}");
     }
 }

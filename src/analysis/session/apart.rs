@@ -258,8 +258,10 @@ impl Mechanisms {
                 break;
             }
         }
-        out.energy = before.followed_by(&self.energy());
-        out.energy.spent /= threads.max(1) as u32;
+        let mut parts = self.energy();
+        // side by side
+        parts.spent /= threads.clamp(1, self.len()) as u32;
+        out.energy = before.followed_by(&parts);
         again
     }
 

@@ -196,8 +196,8 @@ impl Session {
                 );
             }
             let (own, translation) = phase.elapsed();
-            let spent = taken + trajectory.energy.spent.as_secs_f64() + seen.seconds;
-            seconds.push((own - spent).max(0.0));
+            let spent = trajectory.energy.spent.as_secs_f64() + seen.seconds;
+            seconds.push((own - taken - spent).max(0.0));
             self.run.record.seconds.translate += translation;
             self.run.record.seconds.evaluate += spent;
         }
@@ -211,7 +211,7 @@ impl Session {
     }
 
     /// Lets mechanisms that nothing couples go on each by itself to the end, as far as that pays;
-    /// returns the time that it took to take them apart, in s.
+    /// returns the time that it took to take them apart, without that of translation, in s.
     fn go_on_apart(
         &mut self,
         (system, numbers): (&mut System, Vec<f64>),
@@ -227,8 +227,8 @@ impl Session {
         let left = outputs.last().map_or(0.0, |end| end - t);
         let mechanisms = self.take_apart(system, (&numbers, left), watch);
         system.numbers.copy_from_slice(&numbers);
-        let (own, translation) = phase.elapsed();
-        self.run.record.seconds.record += own;
+        let (taken, _) = phase.elapsed();
+        self.run.record.seconds.record += taken;
         let n = mechanisms.as_ref().map_or(0, Mechanisms::len);
         let threads = self.options.threads.unwrap_or(1);
         let together = Options {
@@ -251,7 +251,7 @@ impl Session {
                 "{n} mechanisms that nothing couples have steps of their own from time {t} on{until}"
             )));
         }
-        own + translation
+        taken
     }
 
     /// Notes in the log which sensors were triggered, and whether one ended the run.
