@@ -104,10 +104,12 @@ fn unit_cell(unit: &str) -> String {
 }
 
 /// Writes rows of text cells, quoted where they must be: the first name, too, where it holds either
-/// separator, because a reader takes the first separator outside of quotes.
+/// separator, because a reader takes the first separator outside of quotes, and where it begins with
+/// a byte order mark, which a reader takes for the file's own.
 fn to_text(rows: &[Vec<String>], separator: u8) -> String {
     let first = rows.first().and_then(|names| names.first());
-    let quotes = match first.is_some_and(|name| name.contains([',', ';'])) {
+    let is_misread = |name: &String| name.contains([',', ';']) || name.starts_with('\u{feff}');
+    let quotes = match first.is_some_and(is_misread) {
         true => ::csv::QuoteStyle::Always,
         false => ::csv::QuoteStyle::Necessary,
     };
@@ -303,8 +305,16 @@ mod tests {
     }
 
     #[test]
-    fn a_first_name_with_a_separator_reads_back() {
-        for name in ["x; mm", "DX(1,2)", "a\nb", "say \"x;y\""] {
+    fn a_first_name_that_could_be_taken_for_something_else_reads_back() {
+        let names = [
+            "x; mm",
+            "DX(1,2)",
+            "a\nb",
+            "say \"x;y\"",
+            "\u{feff}",
+            "\u{feff}x",
+        ];
+        for name in names {
             for decimal_comma in [false, true] {
                 let mut run = Run::new("r", "t", Units::default());
                 run.columns[0].name = name.into();

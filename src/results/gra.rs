@@ -25,6 +25,7 @@ const STATIC: f64 = -5.55555e5;
 /// When the contents are not of this format, with the line.
 pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
     let text = String::from_utf8_lossy(bytes);
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let lines: Vec<&str> = text.lines().collect();
     let &[identification, title, counts] = lines
         .first_chunk::<3>()
@@ -349,6 +350,8 @@ two parts and a force
             (run.units.length.as_str(), run.units.angle.as_str()),
             ("mm", "rad")
         );
+        let marked = read(format!("\u{feff}{TWO_PARTS}").as_bytes()).unwrap();
+        assert_eq!(marked.columns.len(), run.columns.len());
     }
 
     #[test]
