@@ -221,6 +221,8 @@
 // fuzz/README.md)
 #![cfg_attr(not(feature = "native"), forbid(unsafe_code))]
 #![deny(unsafe_code)]
+// the same bits on every system: elementary functions are those of `scalar`
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 // names follow the monogram notation: capitals are frames and only frames (`p_JI_K`, `R_GP`)
 #![allow(non_snake_case)]
 
@@ -260,6 +262,7 @@ pub mod scene;
 #[cfg(feature = "solver")]
 pub mod analysis;
 #[cfg(feature = "pages")]
+#[allow(clippy::disallowed_methods, reason = "pictures have few digits")]
 pub mod report;
 // floor 6
 #[cfg(feature = "solver")]
@@ -270,6 +273,7 @@ mod serialization;
 pub mod setup;
 // floor 7
 #[cfg(feature = "cli")]
+#[allow(clippy::disallowed_methods, reason = "what is shown has few digits")]
 pub mod cli;
 
 #[cfg(feature = "solver")]

@@ -1,5 +1,6 @@
 //! Numbers as sentences write them: few digits, lengths with their unit, points in parentheses.
 
+use crate::scalar::Scalar;
 use crate::space::Vec3;
 
 /// Writes the size of a length with its unit.
@@ -29,7 +30,7 @@ pub(in crate::analysis) fn short(x: f64) -> String {
     if !(1e-3..1e5).contains(&x.abs()) {
         return format!("{x:.3e}");
     }
-    let decimals = (3 - x.abs().log10().floor() as i32).max(0) as usize;
+    let decimals = (3 - Scalar::log10(x.abs()).floor() as i32).max(0) as usize;
     let text = format!("{x:.decimals$}");
     if decimals == 0 {
         return text;

@@ -7,6 +7,7 @@ use crate::dataset::value::{Value, angles, numbers};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::model::geometry::{marker_frame, orientation};
 use crate::model::{ElementId, ElementKind, Model};
+use crate::scalar::{Scalar, hypot};
 use crate::space::{self, Mat3, Vec3, rotation};
 
 /// One end of a joint or force: a marker, or a body, on which a marker is made where the other end
@@ -133,14 +134,18 @@ fn frame(
 /// z stays.
 fn euler(r: &Mat3<f64>) -> [f64; 3] {
     let r = &r.0;
-    let sine = r[0][2].hypot(r[1][2]);
+    let sine = hypot(r[0][2], r[1][2]);
     if sine < 1e-15 {
-        return [(r[1][0]).atan2(r[0][0]), 0.0f64.atan2(r[2][2]), 0.0];
+        return [
+            Scalar::atan2(r[1][0], r[0][0]),
+            Scalar::atan2(0.0f64, r[2][2]),
+            0.0,
+        ];
     }
     [
-        r[0][2].atan2(-r[1][2]),
-        sine.atan2(r[2][2]),
-        r[2][0].atan2(r[2][1]),
+        Scalar::atan2(r[0][2], -r[1][2]),
+        Scalar::atan2(sine, r[2][2]),
+        Scalar::atan2(r[2][0], r[2][1]),
     ]
 }
 

@@ -1,6 +1,6 @@
 //! `cognate run`: a model with its commands, from file to results.
 
-use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, threads};
+use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs};
 use super::doubted;
 use super::limit::{Guard, simulations_to_the_end};
 use super::progress::Progress;
@@ -366,7 +366,7 @@ fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session 
         body_rates: args.body_motion,
         only: args.only.clone(),
         accuracy: args.accuracy,
-        threads: Some(threads(args.threads)),
+        threads: Some(args.threads.unwrap_or(0)),
         ..Options::default()
     };
     let options = args.integration.given_to(options);

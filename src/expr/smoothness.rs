@@ -16,6 +16,7 @@ use super::functions::Continuity;
 use super::interpolation::Bindings;
 use super::program::{Break, Builder, Folding, Input, Levels, Program, Value, Work};
 use crate::diagnostic::Error;
+use crate::scalar::Scalar;
 use crate::scalar::{Germ, ORDERS};
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -505,7 +506,7 @@ fn drawn(n: usize, draw: usize) -> Vec<f64> {
     (0..n)
         .map(|k| {
             // Weyl sequences of different irrational steps
-            let step = (2.0 + k as f64).sqrt() + (3.0 + 2.0 * k as f64).cbrt();
+            let step = (2.0 + k as f64).sqrt() + Scalar::powf(3.0 + 2.0 * k as f64, 1.0 / 3.0);
             let u = (step * (draw as f64 + 1.0)).fract();
             let size = [1.0, 1.0, 0.1, 10.0, 1.0, 100.0][draw % 6];
             let sign = if draw.is_multiple_of(2) || u < 0.25 {

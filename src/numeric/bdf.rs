@@ -32,6 +32,7 @@ use super::control::{
 };
 use super::corrector::{self, Corrector, Iterate};
 use super::{Dae, Failure, Method, Options, Reason, Stats, Step, Stop};
+use crate::scalar::Scalar;
 
 /// Highest order that is stable enough.
 const MAX_ORDER: usize = 5;
@@ -395,7 +396,7 @@ impl Bdf {
                 }
             }
             past.k = k_next;
-            let factor = (2.0 * estimate + 1e-4).powf(-1.0 / (k_next + 1) as f64);
+            let factor = Scalar::powf(2.0 * estimate + 1e-4, -1.0 / (k_next + 1) as f64);
             if factor >= 2.0 && past.wait == 0 {
                 h_next = 2.0 * h;
             } else if factor <= 1.0 {
@@ -459,7 +460,11 @@ impl Bdf {
                 .zip(&self.controlled)
                 .map(|((x, s), c)| x * s * c),
         );
-        let factor = 0.9 * (2.0 * errors.estimate + 1e-4).powf(-1.0 / (errors.k_new + 1) as f64);
+        let factor = 0.9
+            * Scalar::powf(
+                2.0 * errors.estimate + 1e-4,
+                -1.0 / (errors.k_new + 1) as f64,
+            );
         let factor = if factor.is_finite() {
             factor.clamp(0.25, 0.9)
         } else {
@@ -502,7 +507,7 @@ impl Bdf {
 /// than the request. Measured over pendulum, van der Pol, Robertson, HIRES and the stabilized
 /// index-2 pendulum, requests 1e-3 … 1e-10: the error at the end is 0.01 to 25 times the request.
 fn inner_tolerance(request: f64) -> f64 {
-    0.05 * request.powf(1.1)
+    0.05 * Scalar::powf(request, 1.1)
 }
 
 impl<P: Dae + ?Sized> Method<P> for Bdf {

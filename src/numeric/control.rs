@@ -23,6 +23,7 @@
 //! the one that moves. A number that is not finite makes the norm not finite.
 
 use super::{Failure, Options, Reason, Relation, Stats, Step, Stop};
+use crate::scalar::Scalar;
 
 /// Smallest relative error that double precision can control.
 const SMALLEST_TOLERANCE: f64 = 1e-14;
@@ -474,7 +475,8 @@ impl Pi {
     /// only a guess).
     pub fn accepted(&mut self, error: f64, calm: bool, guessed: bool) -> f64 {
         let error = error.max(1e-10);
-        let factor = self.safety * error.powf(-self.alpha) * self.previous.powf(self.beta);
+        let factor =
+            self.safety * Scalar::powf(error, -self.alpha) * Scalar::powf(self.previous, self.beta);
         self.previous = error.max(1e-4);
         let grow = if calm { 1.0 } else { self.grow };
         factor.clamp(self.shrink, if guessed { 5.0 * grow } else { grow })
@@ -483,7 +485,7 @@ impl Pi {
     /// Returns the factor for another attempt after one with `‖e‖ > 1`, or with an error that is no
     /// number.
     pub fn rejected(&self, error: f64) -> f64 {
-        let factor = self.safety * error.powf(-self.alpha);
+        let factor = self.safety * Scalar::powf(error, -self.alpha);
         if factor.is_finite() {
             factor.clamp(self.shrink, 0.9)
         } else {
@@ -547,7 +549,7 @@ impl Starter<'_> {
                 speed
             };
             let h = if haste > 1e-8 {
-                (0.01 * self.weights.tolerance()).powf(1.0 / self.order as f64) / haste
+                Scalar::powf(0.01 * self.weights.tolerance(), 1.0 / self.order as f64) / haste
             } else {
                 1e3 * probe
             };

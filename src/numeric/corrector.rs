@@ -29,6 +29,7 @@
 use super::control::{worst, worst_index};
 use super::sparse::Factors;
 use super::{Dae, Failure, Kind, Options, Reason, Stats};
+use crate::scalar::Scalar;
 
 /// Error that the iteration may leave, as a part of the error permitted in a step.
 const PERMITTED_REST: f64 = 0.1;
@@ -302,7 +303,7 @@ impl Corrector {
         at.e.fill(0.0);
         self.last.fill(f64::INFINITY);
         // the matrix ages, so does what is known of its convergence
-        self.rate_factor = self.rate_factor.max(f64::EPSILON).powf(RATE_AGEING);
+        self.rate_factor = Scalar::powf(self.rate_factor.max(f64::EPSILON), RATE_AGEING);
         let damping = if cj == self.cj {
             1.0
         } else {
@@ -343,7 +344,7 @@ impl Corrector {
                 // and with another cj no less than |1 − damping|
                 factor = factor.max((1.0 - damping).abs());
             } else {
-                let rate = (size / first).powf(1.0 / iteration as f64);
+                let rate = Scalar::powf(size / first, 1.0 / iteration as f64);
                 if rate > SLOWEST_RATE && size > at.rounding {
                     stagnant = Some(size);
                     break;

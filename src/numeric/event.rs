@@ -315,9 +315,11 @@ impl Locator {
         self.at_a.copy_from_slice(&self.values[i - 1]);
         self.at_b.copy_from_slice(&self.values[i]);
         let resolution = 4.0 * f64::EPSILON * a.abs().max(b.abs());
-        let bisections = ((b - a) / resolution).log2().ceil().max(0.0);
-        let mut radius = resolution * 0.5 * (bisections + 1.0).exp2();
         let whole = b - a;
+        let mut radius = resolution;
+        while 0.0 < radius && radius < whole {
+            radius *= 2.0;
+        }
         while b - a > resolution {
             let middle = a + 0.5 * (b - a);
             // earliest secant root of the functions that have crossed, moved a little towards the

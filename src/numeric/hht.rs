@@ -33,6 +33,7 @@ use super::control::{
 };
 use super::corrector::{self, Corrector, Iterate};
 use super::{Dae, Failure, Kind, Method, Options, Reason, Stats, Step, Stop};
+use crate::scalar::Scalar;
 
 /// Order of the method.
 const ORDER: usize = 2;
@@ -300,7 +301,7 @@ impl Hht {
 /// Returns the permitted error of a step for a requested accuracy: a run of order 2 sums h⁻¹
 /// errors of h³.
 fn inner_tolerance(request: f64) -> f64 {
-    0.3 * request.powf(1.5)
+    0.3 * Scalar::powf(request, 1.5)
 }
 
 impl<P: Dae + ?Sized> Method<P> for Hht {

@@ -122,7 +122,7 @@ impl Path {
         // spread evenly over half a sphere: a spiral with the golden angle
         for k in 0..200 {
             let height = (f64::from(k) + 0.5) / 200.0;
-            let (sin, cos) = (f64::from(k) * 2.399_963_229_728_653).sin_cos();
+            let (sin, cos) = Scalar::sin_cos(f64::from(k) * 2.399_963_229_728_653);
             let width = (1.0 - height * height).sqrt();
             let r = Vec3([width * cos, width * sin, height]);
             let apart = nearest(r);

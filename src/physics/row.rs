@@ -38,6 +38,7 @@
 //! there on rows are followed.
 
 use crate::scalar::Scalar;
+use crate::scalar::hypot;
 use crate::space::Frame;
 
 /// A scalar equation between two marker frames.
@@ -196,7 +197,7 @@ fn body_angle<S: Scalar>(
 
 /// Returns cos β₂ of `y = sin β₁ cos β₂` and `x = cos β₁ cos β₂`, with its sign (1).
 fn signed_cosine<S: Scalar>(y: S, x: S, drive: &Drive<S>, cosine: Option<S>) -> S {
-    let (s, c) = drive.reference.sin_cos();
+    let (s, c) = Scalar::sin_cos(drive.reference);
     let along = x.scale(c) + y.scale(s);
     let zero = S::zero();
     let sign = match cosine {
@@ -230,16 +231,16 @@ pub fn about_the_middle(i: &Frame<f64>, j: &Frame<f64>) -> Option<[f64; 3]> {
 /// Returns both triples of body 1-2-3 angles of I in J, the principal one first.
 fn both_triples(i: &Frame<f64>, j: &Frame<f64>) -> [[f64; 3]; 2] {
     let r = |row: usize, column: usize| j.rotation.column(row).dot(i.rotation.column(column));
-    let cosine = r(1, 2).hypot(r(2, 2));
+    let cosine = hypot(r(1, 2), r(2, 2));
     let first = [
-        (-r(1, 2)).atan2(r(2, 2)),
-        r(0, 2).atan2(cosine),
-        (-r(0, 1)).atan2(r(0, 0)),
+        Scalar::atan2(-r(1, 2), r(2, 2)),
+        Scalar::atan2(r(0, 2), cosine),
+        Scalar::atan2(-r(0, 1), r(0, 0)),
     ];
     let second = [
-        r(1, 2).atan2(-r(2, 2)),
-        r(0, 2).atan2(-cosine),
-        r(0, 1).atan2(-r(0, 0)),
+        Scalar::atan2(r(1, 2), -r(2, 2)),
+        Scalar::atan2(r(0, 2), -cosine),
+        Scalar::atan2(r(0, 1), -r(0, 0)),
     ];
     [first, second]
 }

@@ -3,6 +3,7 @@
 use super::run::catch_up;
 use super::{Kind, Seconds};
 use crate::diagnostic::{Diagnostic, Subject};
+use crate::scalar::Scalar;
 
 /// The way in which a run, or one simulation of it, ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -159,12 +160,12 @@ pub struct ChannelAccuracy {
 impl ChannelAccuracy {
     /// Returns how many digits of the largest value can be believed at 19 of 20 outputs.
     pub fn digits(&self) -> f64 {
-        (-self.usual.log10()).max(0.0)
+        (-Scalar::log10(self.usual)).max(0.0)
     }
 
     /// Returns how many digits of the largest value can be believed at all outputs.
     pub fn least_digits(&self) -> f64 {
-        (-self.relative.log10()).max(0.0)
+        (-Scalar::log10(self.relative)).max(0.0)
     }
 }
 

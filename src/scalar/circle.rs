@@ -13,10 +13,11 @@
 //!
 //! S and C are minimax polynomials, with relative errors of 3e-18 and 5e-20. Results are off by at
 //! most 0.8 units in the last place, even where they are nearly zero: `|x| ≤` [`LARGEST_REDUCED`]
-//! keeps n small enough for that. Beyond it the library of the system answers. The tangent is the
-//! quotient of both as sums of two numbers, 0.82 units off at most.
+//! keeps n small enough for that. Beyond it whole numbers find n and r + ρ ([`quarters`]). The
+//! tangent is the quotient of both as sums of two numbers, 0.82 units off at most.
 
 use super::elementary::{Elementary, ROUND_TO_WHOLE, half_square, quotient, rounded};
+use super::quarters;
 use std::f64::consts::FRAC_2_PI;
 
 /// Largest angle, in rad, that is reduced here: n has thirteen bits, and r all its digits even at
@@ -104,7 +105,10 @@ fn beyond_an_eighth(x: f64) -> (f64, f64) {
 
 #[cold]
 fn far(x: f64) -> (f64, f64) {
-    f64::sin_cos(x)
+    let (quarters, r) = quarters::of_size(x);
+    let (sine, cosine) = of_remainder(r);
+    let (sine, cosine) = turned(quarters, sine, cosine);
+    (if x < 0.0 { -sine } else { sine }, cosine)
 }
 
 /// Returns sines and cosines of several angles, in parallel where all are small enough, with the
@@ -207,9 +211,13 @@ fn unless_small(x: f64, sine: f64) -> f64 {
 fn near(x: f64) -> (f64, f64) {
     let (quarters, r) = reduced(x);
     let (sine, cosine) = of_remainder(r);
-    let sine = unless_small(x, sine);
+    turned(quarters, unless_small(x, sine), cosine)
+}
 
-    // quarter turns: exchange sine and cosine where odd, set signs by the second bit
+/// Returns sine and cosine of an angle with so many quarter turns more: exchanges them where they
+/// are odd, and sets signs by their second bit.
+#[inline(always)]
+fn turned(quarters: u64, sine: f64, cosine: f64) -> (f64, f64) {
     let odd = 0u64.wrapping_sub(quarters & 1);
     let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
     let change = (sine ^ cosine) & odd;
@@ -227,21 +235,10 @@ impl Elementary for Tan {
     fn is_usual(x: f64) -> bool {
         x.abs() <= LARGEST_REDUCED
     }
-    /// The quotient of sine and cosine, both as sums.
     #[inline(always)]
     fn near(x: f64) -> f64 {
-        let (quarters, [r, rho]) = reduced(x);
-        let z = r * r;
-        let [s, c] = polynomials(z);
-        let [half, half_rest] = half_square(r);
-        let [s, s2] = rounded([r, r * (z * s) + rho * (1.0 - half)]);
-        let [most, lost] = rounded([1.0, -half]);
-        let [c, c2] = rounded([most, lost + ((z * z * c - r * rho) - half_rest)]);
-        let is_odd = quarters & 1 == 1;
-        let (n, n2) = (if is_odd { -c } else { s }, if is_odd { -c2 } else { s2 });
-        let (d, d2) = (if is_odd { s } else { c }, if is_odd { s2 } else { c2 });
-        let [tangent, rest] = quotient([n, n2], [d, d2]);
-        let tangent = tangent + rest;
+        let (quarters, r) = reduced(x);
+        let tangent = tangent(quarters, r);
         if x.abs() < TANGENT_IS_ANGLE {
             x
         } else {
@@ -250,8 +247,26 @@ impl Elementary for Tan {
     }
     #[cold]
     fn far(x: f64) -> f64 {
-        f64::tan(x)
+        let (quarters, r) = quarters::of_size(x);
+        let tangent = tangent(quarters, r);
+        if x < 0.0 { -tangent } else { tangent }
     }
+}
+
+/// Returns the tangent of quarter turns and r + ρ: the quotient of sine and cosine, both as sums.
+#[inline(always)]
+fn tangent(quarters: u64, [r, rho]: [f64; 2]) -> f64 {
+    let z = r * r;
+    let [s, c] = polynomials(z);
+    let [half, half_rest] = half_square(r);
+    let [s, s2] = rounded([r, r * (z * s) + rho * (1.0 - half)]);
+    let [most, lost] = rounded([1.0, -half]);
+    let [c, c2] = rounded([most, lost + ((z * z * c - r * rho) - half_rest)]);
+    let is_odd = quarters & 1 == 1;
+    let (n, n2) = (if is_odd { -c } else { s }, if is_odd { -c2 } else { s2 });
+    let (d, d2) = (if is_odd { s } else { c }, if is_odd { s2 } else { c2 });
+    let [tangent, rest] = quotient([n, n2], [d, d2]);
+    tangent + rest
 }
 
 #[cfg(test)]
@@ -294,6 +309,26 @@ mod tests {
                 .for_each(agrees);
         }
         assert_eq!(sin_cos(PI).0, 1.224_646_799_147_353_2e-16);
+        // of all doubles this one is nearest to a multiple of π/2 (by whole numbers of 1400 digits;
+        // libraries may be off by several units)
+        let nearest = 6_381_956_970_095_103.0 * 2f64.powi(797);
+        assert_eq!(sin_cos(nearest), (1.0, -4.687_165_924_254_628e-19));
+    }
+
+    #[test]
+    fn angles_of_any_size_are_those_of_the_library() {
+        let mut x = LARGEST_REDUCED;
+        while x < f64::MAX / 2.0 {
+            [x, -x, (x * FRAC_2_PI).round() * FRAC_PI_2]
+                .into_iter()
+                .for_each(agrees);
+            x *= 1.003_7;
+        }
+        agrees(f64::MAX);
+        for x in [3e4, 1.2e9, 7e300] {
+            assert_eq!(Tan::far(-x), -Tan::far(x));
+            assert_eq!(sin_cos(-x), (-sin_cos(x).0, sin_cos(x).1));
+        }
     }
 
     #[test]

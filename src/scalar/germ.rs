@@ -12,6 +12,7 @@
 //! Every coefficient carries an estimate of its rounding error; one that is not clearly larger
 //! counts as zero.
 
+use super::hypot;
 use super::{Scalar, Table};
 use std::sync::Arc;
 
@@ -336,7 +337,7 @@ impl Germ {
         if !complete {
             sum.below = sum.below.min((k + 1.0) * lead).min(END_EXPONENT);
         }
-        let outer = c.powf(e);
+        let outer = Scalar::powf(c, e);
         let mut result = sum.scaled(outer);
         let relative = (e * first.noise / c).abs();
         for t in &mut result.terms[..result.len] {
@@ -523,10 +524,30 @@ impl Scalar for Germ {
         self.power(0.5)
     }
     fn sin(self) -> Self {
-        self.compose(|k, x| turning(k, [x.sin(), x.cos(), -x.sin(), -x.cos()]))
+        self.compose(|k, x| {
+            turning(
+                k,
+                [
+                    Scalar::sin(x),
+                    Scalar::cos(x),
+                    -Scalar::sin(x),
+                    -Scalar::cos(x),
+                ],
+            )
+        })
     }
     fn cos(self) -> Self {
-        self.compose(|k, x| turning(k, [x.cos(), -x.sin(), -x.cos(), x.sin()]))
+        self.compose(|k, x| {
+            turning(
+                k,
+                [
+                    Scalar::cos(x),
+                    -Scalar::sin(x),
+                    -Scalar::cos(x),
+                    Scalar::sin(x),
+                ],
+            )
+        })
     }
     fn tan(self) -> Self {
         self.sin() / self.cos()
@@ -536,7 +557,7 @@ impl Scalar for Germ {
             return Self::undefined();
         }
         self.through_derivative(
-            |x| x.clamp(-1.0, 1.0).asin(),
+            |x| Scalar::asin(x.clamp(-1.0, 1.0)),
             |x| (Self::one() - x * x).power(-0.5),
         )
     }
@@ -545,7 +566,7 @@ impl Scalar for Germ {
             return Self::undefined();
         }
         self.through_derivative(
-            |x| x.clamp(-1.0, 1.0).acos(),
+            |x| Scalar::acos(x.clamp(-1.0, 1.0)),
             |x| -(Self::one() - x * x).power(-0.5),
         )
     }
@@ -566,9 +587,9 @@ impl Scalar for Germ {
         let (y0, x0) = (part(&y), part(&x));
         // a zero y counts as positive
         let limit = if y0 == 0.0 && y_sign < 0.0 {
-            (-0.0f64).atan2(x0)
+            Scalar::atan2(-0.0f64, x0)
         } else {
-            (y0 + 0.0).atan2(x0)
+            Scalar::atan2(y0 + 0.0, x0)
         };
         if y0 == 0.0 && x0 == 0.0 {
             return Self::undefined();
@@ -577,20 +598,40 @@ impl Scalar for Germ {
         if rate.leading().is_none() {
             return Self::of_term(0.0, limit, limit.abs() * f64::EPSILON);
         }
-        let noise = y.constant_term().1.hypot(x.constant_term().1) / y0.hypot(x0);
+        let noise = hypot(y.constant_term().1, x.constant_term().1) / hypot(y0, x0);
         rate.integral(limit, noise)
     }
     fn sinh(self) -> Self {
-        self.compose(|k, x| turning(k, [x.sinh(), x.cosh(), x.sinh(), x.cosh()]))
+        self.compose(|k, x| {
+            turning(
+                k,
+                [
+                    Scalar::sinh(x),
+                    Scalar::cosh(x),
+                    Scalar::sinh(x),
+                    Scalar::cosh(x),
+                ],
+            )
+        })
     }
     fn cosh(self) -> Self {
-        self.compose(|k, x| turning(k, [x.cosh(), x.sinh(), x.cosh(), x.sinh()]))
+        self.compose(|k, x| {
+            turning(
+                k,
+                [
+                    Scalar::cosh(x),
+                    Scalar::sinh(x),
+                    Scalar::cosh(x),
+                    Scalar::sinh(x),
+                ],
+            )
+        })
     }
     fn tanh(self) -> Self {
         self.through_derivative(Scalar::tanh, |x| x.cosh().power(-2.0))
     }
     fn exp(self) -> Self {
-        self.compose(|k, x| x.exp() / factorial(k))
+        self.compose(|k, x| Scalar::exp(x) / factorial(k))
     }
     fn ln(self) -> Self {
         if self.sign().is_none_or(|s| s <= 0.0) {

@@ -20,6 +20,7 @@ mod jet;
 mod lanes;
 mod logarithm;
 mod power;
+mod quarters;
 
 pub(crate) use circle::sines_and_cosines;
 pub use dual::Dual;
@@ -33,6 +34,18 @@ pub(crate) use power::general as general_power;
 use elementary::one;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// Returns √(a² + b²) of two numbers of any size, off by two units in the last place at most.
+pub fn hypot(a: f64, b: f64) -> f64 {
+    let most = a.abs().max(b.abs());
+    if most > 0.0 && most < f64::INFINITY {
+        let [a, b] = [a / most, b / most];
+        most * (a * a + b * b).sqrt()
+    } else {
+        // neither has a size, or one has none that is finite
+        a.abs() + b.abs()
+    }
+}
 
 /// The result of a comparison: one truth value, one per lane, or a recorded condition.
 pub trait Mask: Copy + Debug {

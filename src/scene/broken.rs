@@ -6,6 +6,7 @@ use super::equations::Equations;
 use super::layout::Layout;
 use crate::model::{ElementId, ElementKind};
 use crate::physics::cam::Contact;
+use crate::scalar::Scalar;
 use crate::space::{Frame, Vec3};
 use std::fmt;
 
@@ -191,7 +192,7 @@ fn not_coplanar(
     let sine = i.rotation.column(2).cross(j.rotation.column(2)).norm();
     let inclined = matches!(cam.contact, Contact::Curves(..)) && sine > COPLANAR_SINE;
     inclined.then(|| Reason::NotCoplanar {
-        angle: sine.min(1.0).asin().to_degrees(),
+        angle: Scalar::asin(sine.min(1.0)).to_degrees(),
         markers: [cam.i, cam.j].map(|m| ElementKind::Marker.id(scene.markers[m].id)),
     })
 }

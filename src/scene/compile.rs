@@ -10,6 +10,7 @@ use crate::diagnostic::{Diagnostic, Subject};
 use crate::model::geometry::orientation;
 use crate::model::{ElementId, ElementKind, Model, Part};
 use crate::physics::joint::{Motion, Tie, quarter_x};
+use crate::scalar::Scalar;
 use crate::space::{Frame, Mat3, Vec3, rotation};
 use std::collections::BTreeMap;
 
@@ -620,8 +621,10 @@ fn fit(chain: &[Motion], frame: &Frame<f64>) -> Vec<Vec<f64>> {
                     }
                     target = left.rotation.column(next);
                 }
-                let angle = (target.0[c] * fixed.0[b] - target.0[b] * fixed.0[c])
-                    .atan2(target.0[b] * fixed.0[b] + target.0[c] * fixed.0[c]);
+                let angle = Scalar::atan2(
+                    target.0[c] * fixed.0[b] - target.0[b] * fixed.0[c],
+                    target.0[b] * fixed.0[b] + target.0[c] * fixed.0[c],
+                );
                 found.push(vec![angle]);
                 left.rotation = rotation::about_axis(a, -angle) * left.rotation;
             }

@@ -13,6 +13,7 @@ use crate::physics::contact::extent::Extent;
 use crate::physics::contact::law::{Coulomb, Law, Normal};
 use crate::physics::contact::outline::{Outline, Rim};
 use crate::physics::contact::{Pair, Question, Solid, TOUCH_NUMBERS};
+use crate::scalar::Scalar;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -327,7 +328,7 @@ impl Builder<'_> {
             if sine > COPLANAR_SINE {
                 let what = format!(
                     "the planes of its curves are inclined to each other by {:.4} deg: the x-y planes of {} and {}",
-                    sine.min(1.0).asin().to_degrees(),
+                    Scalar::asin(sine.min(1.0)).to_degrees(),
                     ElementKind::Marker.id(ids[0]),
                     ElementKind::Marker.id(ids[1])
                 );

@@ -81,22 +81,26 @@ fn rows() -> Vec<Row> {
         |r| 1.0 + r.magnitude(-40.0, -2.0),
         |r| r.magnitude(-1074.0, 1024.0).abs()
     );
-    // beyond 12 000 rad the library of the system answers, which is allowed more
-    rows.push(row!("tan", |x, _y| x.tan(), |x, _| pxfm::f_tan(x), |r| [
-        r.uniform(-2.0, 2.0),
-        0.0
-    ]));
-    rows.push(row!("tan", |x, _y| x.tan(), |x, _| pxfm::f_tan(x), |r| [
-        r.magnitude(-1074.0, 12.5),
-        0.0
-    ]));
-    // beside zeros and poles
-    rows.push(row!("tan", |x, _y| x.tan(), |x, _| pxfm::f_tan(x), |r| [
-        r.uniform(-7600.0, 7600.0).round()
-            * std::f64::consts::FRAC_PI_2
-            * (1.0 + r.magnitude(-54.0, -30.0)),
-        0.0
-    ]));
+    // where it is plain how many quarter turns there are, where that is counted in doubles or in whole numbers, and beside
+    // zeros and poles
+    macro_rules! of_angle {
+        ($name:literal, $method:ident, $rounded:path) => {
+            of_one!(
+                $name,
+                $method,
+                $rounded,
+                |r| r.uniform(-4.0, 4.0),
+                |r| r.magnitude(-1074.0, 12.5),
+                |r| r.magnitude(12.5, 40.0),
+                |r| r.magnitude(0.0, 40.0).round()
+                    * std::f64::consts::FRAC_PI_2
+                    * (1.0 + r.magnitude(-54.0, -30.0))
+            );
+        };
+    }
+    of_angle!("sin", sin, pxfm::f_sin);
+    of_angle!("cos", cos, pxfm::f_cos);
+    of_angle!("tan", tan, pxfm::f_tan);
     of_one!("atan", atan, pxfm::f_atan, |r| r.uniform(-3.0, 3.0), |r| r
         .magnitude(-4.0, 4.0));
     of_one!(
@@ -327,6 +331,8 @@ fn numbers_at_the_edges_become_what_the_standard_says() {
                     "exp" => x.exp(),
                     "ln" => x.ln(),
                     "log10" => x.log10(),
+                    "sin" => x.sin(),
+                    "cos" => x.cos(),
                     "tan" => x.tan(),
                     "atan" => x.atan(),
                     "asin" => x.asin(),

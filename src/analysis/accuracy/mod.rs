@@ -25,6 +25,7 @@
 mod matching;
 
 use crate::numeric::METHODS;
+use crate::scalar::Scalar;
 pub use matching::{Shift, partners, shifts};
 
 /// ρ: the request over that of the companion. A method of order 5 takes 1.4 times as long there.
@@ -76,7 +77,7 @@ pub fn companion_request(error: f64, methods: &[String], has_many_events: bool) 
         TIGHTENING
     };
     let by_order = match has_many_events && order < usize::MAX {
-        true => (0.5 * order as f64).exp2(),
+        true => Scalar::powf(2.0, 0.5 * order as f64),
         false => 1.0,
     };
     let tightening = usual.max(by_order);
@@ -228,7 +229,7 @@ fn first_lost(lost: &[bool]) -> Option<usize> {
 /// Replaces differences by their envelope along time; what is not known counts as nothing.
 fn envelope(differences: &mut [f64]) {
     let outputs = differences.len() as f64;
-    let fall = 0.5_f64.powf(1.0 / (HALVING * outputs).max(1.0));
+    let fall = Scalar::powf(0.5_f64, 1.0 / (HALVING * outputs).max(1.0));
     let mut last = 0.0;
     let mut spread = |d: &mut f64| {
         *d = d.max(last * fall);

@@ -23,6 +23,7 @@ use crate::analysis::system::{System, complaints};
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::model::{ElementKind, Model};
+use crate::scalar::hypot;
 use crate::scene::Scene;
 use crate::scene::equations::Equations;
 use crate::scene::external_inputs::ExternalInput;
@@ -73,11 +74,11 @@ pub struct Mode {
 impl Mode {
     /// Returns |λ|/2π, cycles per time.
     pub fn frequency(&self) -> f64 {
-        self.re.hypot(self.im) / std::f64::consts::TAU
+        hypot(self.re, self.im) / std::f64::consts::TAU
     }
     /// Returns −Re λ/|λ|.
     pub fn damping_ratio(&self) -> f64 {
-        let size = self.re.hypot(self.im);
+        let size = hypot(self.re, self.im);
         if self.re == 0.0 { 0.0 } else { -self.re / size }
     }
 }

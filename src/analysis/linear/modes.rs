@@ -8,6 +8,7 @@ use super::{Mode, PartShape, Small, Wanted};
 use crate::analysis::system::System;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
+use crate::scalar::Scalar;
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
 use nalgebra::linalg::Schur;
@@ -106,8 +107,8 @@ pub(super) fn eigenvector(
     let seed = before.len() as f64;
     let mut x = DVector::from_fn(n, |k, _| {
         Complex::new(
-            1.0 + (1.7 * k as f64 + seed).sin() * 0.5,
-            (2.3 * k as f64 + 3.0 * seed).cos() * 0.3,
+            1.0 + Scalar::sin(1.7 * k as f64 + seed) * 0.5,
+            Scalar::cos(2.3 * k as f64 + 3.0 * seed) * 0.3,
         )
     });
     for _ in 0..INVERSE_ITERATIONS {

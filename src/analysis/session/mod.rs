@@ -116,7 +116,7 @@ pub struct Options {
     /// and each phase of setting up
     pub limit: Option<f64>,
     /// threads on which mechanisms that nothing couples are integrated; results do not depend on
-    /// it. `None`: one
+    /// it. `None`: one; 0: one for each processor
     pub threads: Option<usize>,
     /// give every column bars of error, from further runs at other requests
     pub accuracy: bool,

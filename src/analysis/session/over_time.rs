@@ -230,7 +230,11 @@ impl Session {
         let (taken, _) = phase.elapsed();
         self.run.record.seconds.record += taken;
         let n = mechanisms.as_ref().map_or(0, Mechanisms::len);
-        let threads = self.options.threads.unwrap_or(1);
+        let threads = match self.options.threads {
+            // asking costs a small run a hundredth, so it is not done before
+            Some(0) => std::thread::available_parallelism().map_or(1, usize::from),
+            asked => asked.unwrap_or(1),
+        };
         let together = Options {
             may_part: false,
             left: None,

@@ -13,6 +13,7 @@ use crate::diagnostic::{Cause, Diagnostic};
 use crate::numeric::connected::{Block, SparseRow, connected};
 use crate::numeric::rank::Rank;
 use crate::physics::row::{Law, body_angles};
+use crate::scalar::Scalar;
 use crate::scene::broken;
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured};
@@ -543,7 +544,7 @@ fn gap(scene: &Scene, at: &Equations<'_, f64>, r: usize, g: f64) -> String {
         RowKind::Markers { law, .. } if law.is_length() => along(),
         RowKind::Cam { .. } => along(),
         RowKind::Markers { .. } => {
-            let angle = g.clamp(-1.0, 1.0).asin().to_degrees();
+            let angle = Scalar::asin(g.clamp(-1.0, 1.0)).to_degrees();
             format!("{} deg {}", short(angle.abs()), direction.way())
         }
         RowKind::Displacements(_) | RowKind::Formula { .. } => short(g.abs()),

@@ -22,6 +22,7 @@ use crate::analysis::start::placement::log;
 use crate::model::ElementId;
 use crate::physics::action::Action;
 use crate::physics::row::{Drive, Law, about_the_middle, body_angles};
+use crate::scalar::{Scalar, hypot};
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::Equations;
@@ -123,7 +124,7 @@ pub fn of_tie(
         Law::Dot(a, b) => Some(square(I.column(a), J.column(b), J, normal)),
         Law::EqualDots => {
             let [w, _, _, z] = rotation::to_quaternion(&(J.transpose() * *I));
-            Some(vec![(I.column(2), -short_way(2.0 * z.atan2(w)))])
+            Some(vec![(I.column(2), -short_way(2.0 * Scalar::atan2(z, w)))])
         }
         Law::Offset(_) | Law::Along(_) | Law::Angle | Law::BodyAngle { .. } => None,
     })
@@ -151,7 +152,7 @@ fn aligned(u: Vec3<f64>, v: Vec3<f64>, J: &Mat3<f64>, normal: usize) -> Vec<(Vec
     } else {
         across.times(1.0 / sine)
     };
-    vec![(axis, sine.atan2(cosine)), (axis.cross(u), 0.0)]
+    vec![(axis, Scalar::atan2(sine, cosine)), (axis.cross(u), 0.0)]
 }
 
 /// Returns the shortest turn of an axis that makes it square to another (3).
@@ -163,7 +164,7 @@ fn square(u: Vec3<f64>, v: Vec3<f64>, J: &Mat3<f64>, normal: usize) -> Vec<(Vec3
     } else {
         across.times(1.0 / sine)
     };
-    vec![(axis, sine.atan2(cosine) - FRAC_PI_2)]
+    vec![(axis, Scalar::atan2(sine, cosine) - FRAC_PI_2)]
 }
 
 /// Returns a normal of an axis, `k` eighths of a turn from that nearest to an axis of J.
@@ -177,7 +178,7 @@ fn normal_to(v: Vec3<f64>, J: &Mat3<f64>, k: usize) -> Vec3<f64> {
         }
     });
     let first = first.times(1.0 / first.norm());
-    let (s, c) = (FRAC_PI_4 * (2 * k % 4 + k / 2) as f64).sin_cos();
+    let (s, c) = Scalar::sin_cos(FRAC_PI_4 * (2 * k % 4 + k / 2) as f64);
     first.times(c) + v.cross(first).times(s)
 }
 
@@ -300,9 +301,9 @@ fn single(
     let missing = short_way(drive.value - law.shown(i, j, drive));
     let z = i.rotation.column(2);
     let at = |k: usize| j.rotation.column(k).dot(z);
-    let cosine = at(1).hypot(at(2));
+    let cosine = hypot(at(1), at(2));
     // β₁, on the side of the reference where β₂ is driven
-    let (mut s, mut c) = drive.reference.sin_cos();
+    let (mut s, mut c) = Scalar::sin_cos(drive.reference);
     if cosine > NO_DIRECTION {
         let side = if angle == 1 && at(2) * c - at(1) * s < 0.0 {
             -cosine
@@ -359,11 +360,11 @@ pub fn refer(
         );
         let z = i.rotation.column(2);
         let (y, x) = (-j.rotation.column(1).dot(z), j.rotation.column(2).dot(z));
-        if y.hypot(x) < NO_DIRECTION {
+        if hypot(y, x) < NO_DIRECTION {
             continue;
         }
-        let (s, c) = drive.reference.sin_cos();
-        let driven = drive.value.cos();
+        let (s, c) = Scalar::sin_cos(drive.reference);
+        let driven = Scalar::cos(drive.value);
         found.push((
             m,
             if let (true, Some(angles)) = (drawn, about_the_middle(&i, &j)) {
@@ -376,9 +377,9 @@ pub fn refer(
                 x * c + y * s
             }) < 0.0
             {
-                (-y).atan2(-x)
+                Scalar::atan2(-y, -x)
             } else {
-                y.atan2(x)
+                Scalar::atan2(y, x)
             },
         ));
     }

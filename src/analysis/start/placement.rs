@@ -297,6 +297,6 @@ pub(super) fn log(R: &Mat3<f64>) -> Vec3<f64> {
     if sine == 0.0 {
         return Vec3::zero();
     }
-    let angle = 2.0 * sine.atan2(w.abs());
+    let angle = 2.0 * Scalar::atan2(sine, w.abs());
     Vec3([x, y, z]).times(sign * angle / sine)
 }

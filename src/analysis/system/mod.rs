@@ -64,8 +64,10 @@ use std::cell::OnceCell;
 use std::sync::Arc;
 use turns::Look;
 
-/// Operations beside those of evaluations in a step, over the evaluations in it, of small systems.
-const OPERATIONS_OF_A_STEP: usize = 400;
+/// Operations beside those of evaluations in a step, over the evaluations in it: of any step, and
+/// for each unknown.
+const OPERATIONS_OF_A_STEP: usize = 100;
+const OPERATIONS_OF_AN_UNKNOWN: usize = 25;
 
 /// A scene with its programs, ready to be integrated.
 #[derive(Clone, Debug)]
@@ -252,7 +254,8 @@ impl System {
     /// Returns the number of operations of a step over the evaluations in it: those of one, and of
     /// what else is done.
     pub(super) fn operations_of_a_step(&self) -> usize {
-        self.operations() + OPERATIONS_OF_A_STEP
+        let others = OPERATIONS_OF_A_STEP + OPERATIONS_OF_AN_UNKNOWN * self.scene.layout.n_y();
+        self.operations() + others
     }
 
     /// Returns the number of operations of one projection.

@@ -22,6 +22,7 @@
 use super::System;
 use crate::expr::program::{Program, Work};
 use crate::numeric::{Failure, Method, Step};
+use crate::scalar::Scalar;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::{STATIC, Unsupported};
 use crate::scene::external_inputs::ExternalInput;
@@ -45,7 +46,7 @@ struct Piece {
 
 /// Returns the place of node `k` within a step, 0 to 1.
 fn node(k: usize) -> f64 {
-    0.5 * (1.0 - (std::f64::consts::PI * k as f64 / (NODES - 1) as f64).cos())
+    0.5 * (1.0 - Scalar::cos(std::f64::consts::PI * k as f64 / (NODES - 1) as f64))
 }
 
 impl Piece {
@@ -62,7 +63,7 @@ impl Piece {
             let terms = self.values.iter().enumerate().map(|(k, value)| {
                 let end = k == 0 || k == NODES - 1;
                 let weight = if end { 0.5 } else { 1.0 };
-                weight * value * (std::f64::consts::PI * (k * order) as f64 / n).cos()
+                weight * value * Scalar::cos(std::f64::consts::PI * (k * order) as f64 / n)
             });
             2.0 / n * terms.sum::<f64>()
         };

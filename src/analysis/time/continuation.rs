@@ -18,6 +18,7 @@ use crate::analysis::time::states::{Cubic, Node};
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::numeric::{Failure, Ode, Stats};
+use crate::scalar::Scalar;
 use crate::scene::RowKind;
 use crate::scene::layout::Layout;
 use crate::scene::mover::Mover;
@@ -321,7 +322,7 @@ impl Continuation {
         let (off, way) = self.compare(sides, &predicted, &node, h);
         if off.is_nan() || off > 1.0 || way > LONGEST_WAY {
             let factor = if off > 1.0 {
-                SAFETY * off.powf(-0.25)
+                SAFETY * Scalar::powf(off, -0.25)
             } else {
                 0.5
             };
@@ -335,7 +336,7 @@ impl Continuation {
             return Tried::leaves(0, 0.5);
         }
         let most = SAFETY * LONGEST_WAY / way.max(driven).max(f64::MIN_POSITIVE);
-        let factor = (SAFETY * off.max(1e-10).powf(-0.25)).min(most);
+        let factor = (SAFETY * Scalar::powf(off.max(1e-10), -0.25)).min(most);
         Tried::Continues {
             node,
             side: Some(side),

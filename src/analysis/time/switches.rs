@@ -34,6 +34,7 @@ use crate::analysis::system::System;
 use crate::analysis::time::chatter::Chatter;
 use crate::numeric::event::{Locator, sign};
 use crate::numeric::{Failure, Method, Step};
+use crate::scalar::Scalar;
 
 /// Switches in a row, each within [`BURST_DURATION`] of the one before, after which branches are
 /// let go.
@@ -99,7 +100,7 @@ pub fn never_end(events: &[f64], end: f64) -> bool {
     }
     let [quarter, half, now] = [n / 4, n / 2, n].map(|k| events[k - 1]);
     let doubling = now - half;
-    let expected = n as f64 * ((end - now) / doubling).exp2();
+    let expected = n as f64 * Scalar::powf(2.0, (end - now) / doubling);
     doubling < DOUBLES_AS_FAST * (half - quarter) && expected > TOO_MANY_EVENTS
 }
 

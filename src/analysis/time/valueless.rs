@@ -13,6 +13,7 @@ use crate::expr::functions::Function;
 use crate::expr::program::{Input, Work};
 use crate::expr::walk;
 use crate::model::ElementId;
+use crate::scalar::Scalar;
 use crate::scene::asker::Asker;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
@@ -141,7 +142,7 @@ fn divisor(ast: &Ast, ix: NodeIx, values: &[Option<f64>]) -> Option<f64> {
         Node::Call {
             callee: Callee::Function(Function::Tan),
             ref args,
-        } => args.first().and_then(|&x| value(x)).map(f64::cos),
+        } => args.first().and_then(|&x| value(x)).map(Scalar::cos),
         _ => None,
     }
 }

@@ -17,6 +17,7 @@ use crate::expr::program::Input;
 use crate::expr::walk::Host;
 use crate::model::{COMPONENTS, ElementId, ElementKind, Formula, Model};
 use crate::physics::kinematic::kinematic_of;
+use crate::scalar::Scalar;
 use crate::scene::{Scene, formula};
 use crate::space::{MarkerState, Mat3, Vec3};
 
@@ -45,7 +46,7 @@ struct Component<'m> {
 /// Returns the rotation by an angle about a unit vector.
 fn about(axis: Vec3<f64>, angle: f64) -> Mat3<f64> {
     let K = Mat3::cross_matrix(axis);
-    Mat3::identity() + K.times(angle.sin()) + (K * K).times(1.0 - angle.cos())
+    Mat3::identity() + K.times(Scalar::sin(angle)) + (K * K).times(1.0 - Scalar::cos(angle))
 }
 
 /// Finds the forces that feed energy into the motion of their I marker.

@@ -14,6 +14,7 @@
 //! methods that agree best; then their difference says how far it can be trusted.
 
 mod attempt;
+#[allow(clippy::disallowed_methods, reason = "pictures have few digits")]
 mod chart;
 mod distance;
 mod page;

@@ -7,6 +7,7 @@ use crate::analysis::watch::Watch;
 use crate::diagnostic;
 use crate::numeric::METHODS;
 use crate::results::Status;
+use crate::scalar::Scalar;
 
 /// Part of what the budget has left that one run may take.
 const MOST_PER_RUN: f64 = 0.5;
@@ -33,11 +34,11 @@ impl Series {
             return 0.0;
         };
         let finer = (last / request).max(1.0);
-        let by_order = finer.powf(1.0 / self.order as f64);
+        let by_order = Scalar::powf(finer, 1.0 / self.order as f64);
         let seen = match self.times.as_slice() {
             [.., (before, less), _] if *before > last && *less > 0.0 => {
-                let exponent = (seconds / less).ln() / (before / last).ln();
-                finer.powf(exponent.clamp(0.0, 2.0))
+                let exponent = Scalar::ln(seconds / less) / Scalar::ln(before / last);
+                Scalar::powf(finer, exponent.clamp(0.0, 2.0))
             }
             _ => 1.0,
         };

@@ -4,6 +4,7 @@ use super::bad;
 use super::line::Line;
 use crate::diagnostic::{Diagnostic, Severity, Span};
 use crate::model::{Curve, ElementId, ElementKind, Matrix, MatrixLayout, Model, Place};
+use crate::scalar::Scalar;
 use crate::space::Vec3;
 
 /// A turn between two pieces that is told, since a spline rounds it.   [deg]
@@ -140,7 +141,7 @@ fn merged(
 /// Returns the warning about a corner that the spline rounds.
 fn corner(before: Vec3<f64>, at: Vec3<f64>, after: Vec3<f64>, name: &str) -> Option<Diagnostic> {
     let (a, b) = (at - before, after - at);
-    let turn = a.cross(b).norm().atan2(a.dot(b)).to_degrees();
+    let turn = Scalar::atan2(a.cross(b).norm(), a.dot(b)).to_degrees();
     (turn > CORNER).then(|| Diagnostic {
         severity: Severity::Warning,
         ..bad(format!(

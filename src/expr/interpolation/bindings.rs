@@ -148,7 +148,7 @@ impl Bindings {
         }
         let scale = |v: &Vec<f64>| {
             v.iter()
-                .map(|v| if logarithmic { v.ln() } else { *v })
+                .map(|v| if logarithmic { Scalar::ln(*v) } else { *v })
                 .collect::<Vec<f64>>()
         };
         let density = match Piecewise::linear(&scale(x), &scale(y)) {
@@ -159,7 +159,7 @@ impl Bindings {
             // outside the data the end value holds
             let f = f.clamp(x[0], x[x.len() - 1]);
             if logarithmic {
-                density.at(f.ln(), 0).exp()
+                Scalar::exp(density.at(Scalar::ln(f), 0))
             } else {
                 density.at(f, 0).max(0.0)
             }
@@ -224,7 +224,7 @@ impl Table for Signal {
                 } else {
                     a * Scalar::powi(w, order as i32)
                 };
-                a * (w * x + phase + quarter_turns).sin()
+                a * Scalar::sin(w * x + phase + quarter_turns)
             })
             .sum()
     }

@@ -19,6 +19,7 @@ pub(crate) use contact::{ADVICE as EXPONENT_ADVICE, infinitely_stiff, is_infinit
 use super::advice;
 use super::ast::{Ast, Node, NodeIx};
 use crate::diagnostic::{Diagnostic, Severity, Span};
+use crate::scalar::Scalar;
 
 /// Returns the warnings about an expression, in the order of its text.
 ///
@@ -105,7 +106,7 @@ fn rounded(x: f64) -> String {
             format!("{x:.2e}")
         };
     }
-    let decimals = (2 - x.abs().log10().floor() as i32).max(0) as usize;
+    let decimals = (2 - Scalar::log10(x.abs()).floor() as i32).max(0) as usize;
     let text = format!("{x:.decimals$}");
     match text.split_once('.') {
         Some(_) => text.trim_end_matches('0').trim_end_matches('.').to_string(),

@@ -8,6 +8,7 @@
 use super::*;
 use crate::model::geometry::marker_frame;
 use crate::physics::joint::{JointKind, Relation, Tie};
+use crate::scalar::Scalar;
 use crate::space::{Frame, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -66,7 +67,7 @@ impl Misalignment {
     fn is_contradiction(&self) -> bool {
         match self.needed {
             // the pins are parallel
-            Needed::UniversalPins | Needed::HookePins => self.angle.sin() < TOLD,
+            Needed::UniversalPins | Needed::HookePins => Scalar::sin(self.angle) < TOLD,
             // the rack does not move with the pinion
             Needed::Rack | Needed::Pinion { .. } => (self.angle - FRAC_PI_2).abs() < TOLD,
             Needed::Exchanged { .. } => true,
@@ -302,7 +303,7 @@ fn gears(model: &Model, found: &mut Vec<Misalignment>) {
 /// Returns the angle between two directions; `None` where one has no length.
 fn angle_of(a: Vec3<f64>, b: Vec3<f64>) -> Option<f64> {
     let (sine, cosine) = (a.cross(b).norm(), a.dot(b));
-    (a.norm() > NO_DIRECTION && b.norm() > NO_DIRECTION).then(|| sine.atan2(cosine))
+    (a.norm() > NO_DIRECTION && b.norm() > NO_DIRECTION).then(|| Scalar::atan2(sine, cosine))
 }
 
 /// Returns the angle between an axis of the first marker and one of the second.

@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::model::geometry::marker_frame;
+use crate::scalar::Scalar;
 use crate::space::Vec3;
 use std::cell::LazyCell;
 
@@ -258,7 +259,8 @@ fn stiff(model: &Model) -> Vec<Stiff<'_>> {
         let id = ElementKind::Contact.id(id);
         // the slope of the force at the depth where its damping is fully there
         let depth = if c.dmax > 0.0 { c.dmax } else { 1.0 };
-        let slope = c.stiffness * c.exponent.max(1.0) * depth.powf(c.exponent.max(1.0) - 1.0);
+        let slope =
+            c.stiffness * c.exponent.max(1.0) * Scalar::powf(depth, c.exponent.max(1.0) - 1.0);
         let (name, k) = match c.law {
             ContactLaw::Impact => ("STIFFNESS", slope),
             ContactLaw::Poisson => ("PENALTY", c.penalty),
@@ -315,7 +317,7 @@ fn short(x: f64) -> String {
     if !(1e-4..1e6).contains(&x.abs()) {
         return format!("{x:.2e}");
     }
-    let digits = 3 - x.abs().log10().floor() as i32;
+    let digits = 3 - Scalar::log10(x.abs()).floor() as i32;
     let text = format!("{x:.0$}", digits.max(0) as usize);
     if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()

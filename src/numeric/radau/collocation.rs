@@ -23,6 +23,7 @@
 
 use super::Systems;
 use crate::numeric::{Failure, Ode, Stats};
+use crate::scalar::Scalar;
 
 /// √6
 pub(super) const SQRT6: f64 = 2.449489742783178;
@@ -309,10 +310,13 @@ impl Convergence {
             // the correction that would be left after the last one permitted
             progress.rate_factor = self.theta / (1.0 - self.theta);
             let left = (self.allowed - 1 - iteration) as f64;
-            let predicted = progress.rate_factor * size * self.theta.powf(left) / self.tolerance;
+            let predicted =
+                progress.rate_factor * size * Scalar::powf(self.theta, left) / self.tolerance;
             if predicted >= 1.0 && left > 0.0 {
                 let excess = predicted.clamp(1e-4, 20.0);
-                return Some(Newton::Slow(0.8 * excess.powf(-1.0 / (4.0 + left))));
+                return Some(Newton::Slow(
+                    0.8 * Scalar::powf(excess, -1.0 / (4.0 + left)),
+                ));
             }
         }
         progress.previous_size = size.max(f64::MIN_POSITIVE);
@@ -338,7 +342,7 @@ pub(super) fn solve_collocation_system<P: Ode + ?Sized>(
     stats: &mut Stats,
 ) -> Newton {
     let mut progress = Progress {
-        rate_factor: convergence.rate_factor.max(f64::EPSILON).powf(0.8),
+        rate_factor: Scalar::powf(convergence.rate_factor.max(f64::EPSILON), 0.8),
         previous_size: 0.0,
         previous_ratio: 0.0,
     };

@@ -47,6 +47,7 @@ mod systems;
 use super::control::{self, Attempts, Rejection, Weights, worst, worst_index};
 use super::quadrature::{Node, RADAU_3, over_interpolant};
 use super::{Failure, Memory, Method, Ode, Options, Reason, Stats, Step, Stop};
+use crate::scalar::Scalar;
 use collocation::{
     ALPHA, BETA, Begin, Convergence, GAMMA, KEEP_JACOBIAN_RATE, Newton, Polynomial, Stages,
     solve_collocation_system,
@@ -578,7 +579,7 @@ fn not_finite(index: usize) -> Rejection {
 /// fall in proportion to the request. The factor is measured: over pendulum, Kepler, van der Pol,
 /// Robertson and HIRES, requests 1e-3 … 1e-11, the error is 0.01 to 20 times the request.
 fn inner_tolerance(request: f64) -> f64 {
-    0.05 * request.powf(0.8)
+    0.05 * Scalar::powf(request, 0.8)
 }
 
 impl<P: Ode + ?Sized> Method<P> for Radau {

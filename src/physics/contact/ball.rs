@@ -5,6 +5,7 @@
 //! inside it is the normal of the nearest face.
 
 use super::{Solid, Touch};
+use crate::scalar::hypot;
 use crate::scalar::{Mask, Scalar};
 use crate::space::{MarkerState, Vec3};
 
@@ -152,7 +153,7 @@ fn frustum<S: Scalar>(z: [f64; 2], r: [f64; 2], p: Vec3<S>) -> (S, Vec3<S>) {
     let size = r[0].max(r[1]).max(z[1] - z[0]);
     let (rho, across) = radial(p, size);
     let (height, widening) = (z[1] - z[0], r[1] - r[0]);
-    let slant = height.hypot(widening);
+    let slant = hypot(height, widening);
     let (n_rho, n_z) = (height / slant, -widening / slant);
     // distance from each face, positive outwards
     let faces = [

@@ -27,6 +27,7 @@
 use super::outline::{Corner, Flat, Node, Outline, Spot};
 use super::outline::{along, cross, dot, length, minus, wrapped};
 use super::{TOUCH_NUMBERS, TOUCHES};
+use crate::scalar::Scalar;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -87,9 +88,9 @@ impl Pose {
     }
     /// Turns the direction (an angle, in rad) of a vector of I's plane into J's.
     fn direction(&self, angle: f64) -> f64 {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = Scalar::sin_cos(angle);
         let v = self.turned([cos, sin]);
-        v[1].atan2(v[0])
+        Scalar::atan2(v[1], v[0])
     }
     fn spot(&self, spot: &Spot) -> Spot {
         Spot {
@@ -188,7 +189,7 @@ impl Curves {
             {
                 hint = Some(on_j);
                 let inward = [-normal[0], -normal[1]];
-                let direction = inward[1].atan2(inward[0]);
+                let direction = Scalar::atan2(inward[1], inward[0]);
                 let normals = corner.normals.map(|n| pose.direction(n));
                 let weight = share(corner, self.i.is_point(), normals, (direction, straight));
                 all.push(Found {
@@ -217,7 +218,7 @@ impl Curves {
                 hint = Some(on_i);
                 let inward = pose.turned([-normal[0], -normal[1]]);
                 // from J's solid into I's
-                let direction = inward[1].atan2(inward[0]);
+                let direction = Scalar::atan2(inward[1], inward[0]);
                 let weight = share(
                     corner,
                     self.j.is_point(),
@@ -244,7 +245,7 @@ impl Curves {
         };
         let reach = SOLID_DEPTH * self.size;
         let mirrored = cross(pose.x, pose.y) < 0.0;
-        let turn = pose.x[1].atan2(pose.x[0]);
+        let turn = Scalar::atan2(pose.x[1], pose.x[0]);
         let towards = |n: &Node| {
             if mirrored {
                 turn - n.normal
@@ -275,8 +276,9 @@ impl Curves {
             }
             // the vector between them is along both normals
             let aside = |angle: f64, spread: f64| {
-                let (sin, cos) = angle.sin_cos();
-                spread < 1.5 && cross(between, [cos, sin]).abs() > radii + distance * spread.sin()
+                let (sin, cos) = Scalar::sin_cos(angle);
+                spread < 1.5
+                    && cross(between, [cos, sin]).abs() > radii + distance * Scalar::sin(spread)
             };
             if aside(j.normal, j.spread) || aside(direction, i.spread) {
                 continue;

@@ -13,6 +13,7 @@
 //! - Cells are the leaves of a binary **tree**; each node has a circle about its cells and the
 //!   range of the directions of their normals.
 use super::super::cam::Path;
+use crate::scalar::Scalar;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
@@ -70,7 +71,7 @@ impl Rim {
             }
             Rim::Circle(radius, angle) => {
                 let half = 0.5 * angle;
-                let (sin, cos) = (half * (s + 1.0)).sin_cos();
+                let (sin, cos) = Scalar::sin_cos(half * (s + 1.0));
                 match order {
                     0 => [radius * cos, radius * sin],
                     1 => [-radius * half * sin, radius * half * cos],
@@ -260,7 +261,7 @@ impl Outline {
     fn direction(&self, cell: usize, part: f64) -> f64 {
         let [a, b] = self.cells[cell].s;
         let n = self.normal(self.rim.at(a + (b - a) * part, 1));
-        n[1].atan2(n[0])
+        Scalar::atan2(n[1], n[0])
     }
 
     /// Divides the curve into cells that turn little, each within a polynomial.
@@ -277,7 +278,7 @@ impl Outline {
                     self.rim
                         .at(a + (b - a) * (f64::from(k) + 1e-6) / 16.00001, 1)
                 })
-                .map(|t| t[1].atan2(t[0]))
+                .map(|t| Scalar::atan2(t[1], t[0]))
                 .collect();
             let turn: f64 = directions
                 .windows(2)

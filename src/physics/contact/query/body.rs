@@ -3,6 +3,7 @@
 use super::super::Solid;
 use super::flat::Flat;
 use super::polytope::Polytope;
+use crate::scalar::{Scalar, hypot};
 use crate::space::Vec3;
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::SupportMap;
@@ -48,7 +49,7 @@ pub(super) fn vector(p: [f64; 3]) -> Vector {
 
 /// Returns cosine and sine of the azimuth about z; (1, 0) where there is none.
 fn azimuth(dir: Vector) -> (f64, f64) {
-    let across = dir.x.hypot(dir.y);
+    let across = hypot(dir.x, dir.y);
     // a face that looks along z has no direction of its own
     if across <= 1e-12 * dir.z.abs() || across == 0.0 {
         (1.0, 0.0)
@@ -210,7 +211,7 @@ impl Face {
         let (c, s) = azimuth(dir);
         let (up, out) = (dir.z, dir.x * c + dir.y * s);
         let (height, taper) = (z[1] - z[0], radius[0] - radius[1]);
-        let side = (out * height + up * taper) / height.hypot(taper);
+        let side = (out * height + up * taper) / hypot(height, taper);
         if side >= up.abs() {
             let at = |end: usize| Vector::new(radius[end] * c, radius[end] * s, z[end]);
             return Face {
@@ -225,7 +226,7 @@ impl Face {
             return Face::of_point(Vector::new(0.0, 0.0, z[end]));
         }
         let rim = (0..RIM_POINTS).map(|k| {
-            let (sk, ck) = (std::f64::consts::TAU * k as f64 / RIM_POINTS as f64).sin_cos();
+            let (sk, ck) = Scalar::sin_cos(std::f64::consts::TAU * k as f64 / RIM_POINTS as f64);
             Vector::new(
                 radius[end] * (c * ck - s * sk),
                 radius[end] * (s * ck + c * sk),

@@ -19,6 +19,7 @@
 use super::super::Solid;
 use super::Query;
 use super::body::vector;
+use crate::scalar::{Scalar, hypot};
 use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query::gjk::{self, CsoPoint, GJKResult, VoronoiSimplex};
 use parry3d_f64::query::sat;
@@ -181,7 +182,7 @@ fn points(n: Vector, between: impl Fn(Vector) -> Vector) -> Option<Vector> {
         let det = g[0] * k[1] - g[1] * k[0];
         let (du, dv) = ((x * k[1] - y * k[0]) / det, (y * g[0] - x * g[1]) / det);
         (u, v) = (u - du, v - dv);
-        if (u + v).is_nan() || u.hypot(v) > LARGEST_STEP {
+        if (u + v).is_nan() || hypot(u, v) > LARGEST_STEP {
             return None;
         }
         if du.abs() + dv.abs() < 1e-15 {
@@ -213,7 +214,7 @@ fn edge_and_point(
         for _ in 0..4 {
             let u = along(m)?;
             let square = across(start, u)?;
-            m = square * angle.cos() + u.cross(square) * angle.sin();
+            m = square * Scalar::cos(angle) + u.cross(square) * Scalar::sin(angle);
         }
         Some(m)
     };

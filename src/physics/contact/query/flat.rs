@@ -1,5 +1,7 @@
 //! Geometry in a plane: intersections of lines, points within polygons, nearest points of outlines.
 
+use crate::scalar::hypot;
+
 /// A point projected onto the plane perpendicular to n.
 pub(super) type Flat = [f64; 2];
 
@@ -7,7 +9,7 @@ pub(super) type Flat = [f64; 2];
 const PARALLEL_SINE: f64 = 1e-6;
 
 pub(super) fn distance(p: Flat, q: Flat) -> f64 {
-    (p[0] - q[0]).hypot(p[1] - q[1])
+    hypot(p[0] - q[0], p[1] - q[1])
 }
 
 /// Returns the point of the line from `p` to `q` that is nearest to `at`.
@@ -94,7 +96,7 @@ pub(super) fn is_within(p: Flat, outline: &[Flat], near: f64) -> bool {
 pub(super) fn crossing(p: Flat, q: Flat, r: Flat, s: Flat) -> Option<(Flat, f64)> {
     let (d, g) = ([q[0] - p[0], q[1] - p[1]], [s[0] - r[0], s[1] - r[1]]);
     let cross = d[0] * g[1] - d[1] * g[0];
-    let sine = cross.abs() / (d[0].hypot(d[1]) * g[0].hypot(g[1]));
+    let sine = cross.abs() / (hypot(d[0], d[1]) * hypot(g[0], g[1]));
     // parallel lines touch at their corners instead
     if sine.is_nan() || sine < PARALLEL_SINE {
         return None;

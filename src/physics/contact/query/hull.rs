@@ -8,6 +8,7 @@
 //!    out is reported.
 
 use super::body::vector;
+use crate::scalar::Scalar;
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::ConvexPolyhedron;
 
@@ -96,10 +97,10 @@ fn directions() -> impl Iterator<Item = Vector> {
     (0..FIRST_DIRECTIONS).map(move |k| {
         let z = 1.0 - (2.0 * k as f64 + 1.0) / FIRST_DIRECTIONS as f64;
         let r = (1.0 - z * z).sqrt();
-        let (s, c) = (golden * k as f64 + 0.1234).sin_cos();
+        let (s, c) = Scalar::sin_cos(golden * k as f64 + 0.1234);
         // about x, by an arbitrary angle
         let (x, y) = (r * c, r * s);
-        let (sa, ca) = 0.377_f64.sin_cos();
+        let (sa, ca) = Scalar::sin_cos(0.377_f64);
         Vector::new(x, y * ca - z * sa, y * sa + z * ca)
     })
 }
