@@ -427,6 +427,9 @@ pub fn worst_index(values: impl Iterator<Item = f64>) -> usize {
     at
 }
 
+/// Logarithm of the least ‖e‖ that a step has for the next one, 10⁻⁴.
+const LN_LEAST_PREVIOUS: f64 = -4.0 * std::f64::consts::LN_10;
+
 /// Proportional-integral step control for one-step methods.
 ///
 /// ```text
@@ -446,7 +449,7 @@ pub struct Pi {
     shrink: f64,
     /// largest factor of a step
     grow: f64,
-    /// ‖e‖ of the last accepted step
+    /// logarithm of ‖e‖ of the last accepted step
     previous: f64,
 }
 
@@ -460,13 +463,13 @@ impl Pi {
             safety,
             shrink,
             grow,
-            previous: 1.0,
+            previous: 0.0,
         }
     }
 
     /// Forgets the previous error.
     pub fn reset(&mut self) {
-        self.previous = 1.0;
+        self.previous = 0.0;
     }
 
     /// Returns the factor for the next step after one with `‖e‖ ≤ 1`.
@@ -474,10 +477,9 @@ impl Pi {
     /// `calm` forbids growth (right after a rejection); `guessed` allows more of it (the step was
     /// only a guess).
     pub fn accepted(&mut self, error: f64, calm: bool, guessed: bool) -> f64 {
-        let error = error.max(1e-10);
-        let factor =
-            self.safety * Scalar::powf(error, -self.alpha) * Scalar::powf(self.previous, self.beta);
-        self.previous = error.max(1e-4);
+        let error = Scalar::ln(error.max(1e-10));
+        let factor = self.safety * Scalar::exp(self.beta * self.previous - self.alpha * error);
+        self.previous = error.max(LN_LEAST_PREVIOUS);
         let grow = if calm { 1.0 } else { self.grow };
         factor.clamp(self.shrink, if guessed { 5.0 * grow } else { grow })
     }

@@ -127,6 +127,8 @@ pub(super) struct Convergence {
     rate_factor: f64,
     /// Θ of the last iteration
     pub theta: f64,
+    /// size of the last correction, over the permitted error
+    size: f64,
 }
 
 /// The beginning of a step and its length.
@@ -285,7 +287,14 @@ impl Convergence {
             allowed: allowed.max(3),
             rate_factor: 1.0,
             theta: KEEP_JACOBIAN_RATE,
+            size: 0.0,
         }
+    }
+
+    /// Returns whether an iteration that has ended after so many corrections trusted in the rate of
+    /// the step before: its only correction is larger than the permitted error.
+    pub fn is_untried(&self, iterations: usize) -> bool {
+        iterations == 1 && self.size > 1.0
     }
 
     /// Forgets the rates measured so far.
@@ -295,6 +304,7 @@ impl Convergence {
 
     /// Decides after a correction of the given size: whether the iteration has ended, and how.
     fn judge(&mut self, progress: &mut Progress, iteration: usize, size: f64) -> Option<Newton> {
+        self.size = size;
         if iteration > 0 && size > 0.0 {
             // the rate of convergence; the geometric mean of two ratios once there are two
             let ratio = size / progress.previous_size;

@@ -6,7 +6,7 @@
 //! away.
 
 use super::collocation::{self, GAMMA, ROUNDING, SQRT6, UNEXPLAINED};
-use super::{Failure, Ode, Radau, worst};
+use super::{Failure, Ode, Radau, worst, worst_index};
 
 /// eᵢ of (3).
 const E: [f64; 3] = [
@@ -90,6 +90,18 @@ impl Radau {
             return Ok(hidden);
         }
         Ok(error)
+    }
+
+    /// Returns the unknown whose rate at the new point most contradicts the step by which that was
+    /// found, `f(t + h, y₁) − ẏ(t + h)` filtered as (4), where it does by more than the permitted
+    /// error: a law has changed within a step that took it for as linear as in the step before.
+    pub(super) fn contradicted(&mut self, h: f64) -> Option<usize> {
+        for (i, e) in self.error.iter_mut().enumerate() {
+            *e = self.end.f[i] - self.polynomial.slope(i, 0.0) / h;
+        }
+        self.systems.solve(&mut self.error);
+        let left = || self.error.iter().zip(&self.scale).map(|(e, s)| e * s);
+        (worst(left()) >= 1.0).then(|| worst_index(left()))
     }
 
     /// Returns the size of a correction that may be rounding, over the permitted error.

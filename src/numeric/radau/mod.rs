@@ -467,6 +467,16 @@ impl Radau {
 
         // new point
         self.finish(problem, h, t1)?;
+        if self.convergence.is_untried(iterations)
+            && let Some(row) = self.contradicted(h)
+        {
+            self.convergence.reset();
+            return Err(Rejection {
+                reason: Reason::Newton(row),
+                recoverable: true,
+                factor: FAILED_STAGE_FACTOR,
+            });
+        }
         Ok((error, iterations))
     }
 
