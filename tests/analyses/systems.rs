@@ -340,6 +340,26 @@ fn the_past_of_one_simulation_is_known_in_the_next() {
     );
 }
 
+/// A column that is missing is told, with the reason, also of an expression that stands where USER is meant.
+#[test]
+fn a_request_that_nobody_computes_is_told() {
+    for (request, told) in [
+        ("FUNCTION=USER(1,2)", "REQUEST/1 FUNCTION"),
+        ("F2=TIME\\F3=USER(1)\\", "REQUEST/1 F3"),
+        ("FUNCTION=DZ(2,3,3)", "REQUEST/1 FUNCTION"),
+        ("F2=TIME\\F3=2*TIME\\", ""),
+    ] {
+        let text = format!("REQUEST/1, {request}\n");
+        let mut s = session(&text, &["DZ(2,3,3)"], "DOP853");
+        go(&mut s, 1.0, 2);
+        let warnings = &s.run.record.warnings;
+        let about: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+        let about: Vec<&String> = about.iter().filter(|w| w.contains("REQUEST/1")).collect();
+        assert_eq!(about.len(), usize::from(!told.is_empty()), "{request}: {about:?}");
+        assert!(about.iter().all(|w| w.contains(told)), "{request}: {about:?}");
+    }
+}
+
 #[test]
 fn closures_compute_what_user_stands_for() {
     let text = "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=USER(100, 4, 0.2)\n\
