@@ -223,3 +223,24 @@ fn numbers_have_bars_where_a_smaller_request_is_too_small() {
     let all = samples("a02_nfourbar_2", "RADAU5", 1e-7);
     assert!(all.iter().all(|(error, bar)| error <= bar));
 }
+
+/// A companion that stops on its way knows nothing of what follows: another one that began where the run is would take the errors so
+/// far for none. Numbers that follow have no bar, and that is told.
+#[test]
+fn what_follows_a_companion_that_strayed_has_no_bar() {
+    let mut options = running::options_by(&["AZ(3,1)"], "DOP853", 1e-6);
+    // more than the long simulation takes, less than its companion does
+    let mut plain = begin(running::model(PENDULUM), "plain", options.clone());
+    go(&mut plain, Analysis::Dynamic, 40.0, 40);
+    options.accuracy = true;
+    options.max_steps = Some(plain.run.record.counts.steps as usize * 11 / 10);
+    let mut s = begin(running::model(PENDULUM), "test", options);
+    for end in [1.0, 40.0, 41.0] {
+        go(&mut s, Analysis::Dynamic, end, 20);
+    }
+    let (time, bars) = (values(&s, "time"), values(&s, "AZ(3,1)±"));
+    assert!(time.iter().zip(bars).all(|(t, bar)| *t > 1.0 || bar.is_finite()));
+    assert!(time.iter().zip(bars).all(|(t, bar)| *t <= 40.0 || bar.is_nan()), "{bars:?}");
+    let told = |w: &results::Warning| w.to_string().contains("ends otherwise");
+    assert_eq!(s.run.record.warnings.iter().filter(|w| told(w)).count(), 1);
+}
