@@ -252,7 +252,12 @@ fn a_rate_that_drives_nothing_between_equilibria_is_told() {
         );
         let mut s = session(&text, &["AZ(2,1)"]);
         go(&mut s, Analysis::Static, end, 2);
-        let told = s.run.record.warnings.iter().filter(|w| w.to_string().contains("MOTION/1"));
+        let told = s
+            .run
+            .record
+            .warnings
+            .iter()
+            .filter(|w| w.sentence().contains("MOTION/1"));
         (told.count(), last(&s, "AZ(2,1)"))
     };
     assert_eq!(run("VELOCITY, FUNCTION=1", 1.0), (1, 0.0));

@@ -5,7 +5,7 @@ use crate::running;
 
 use cognate::analysis::session::state::Saved;
 use cognate::dataset::command::Script;
-use cognate::results::Status;
+use cognate::results::{self, Status};
 use running::{
     Analysis, GROUND, Options, Session, begin, last, mistakes, obeys, options_by, rest, session_by,
     try_to, values, whole,
@@ -353,10 +353,17 @@ fn a_request_that_nobody_computes_is_told() {
         let mut s = session(&text, &["DZ(2,3,3)"], "DOP853");
         go(&mut s, 1.0, 2);
         let warnings = &s.run.record.warnings;
-        let about: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+        let about: Vec<String> = warnings.iter().map(results::Warning::sentence).collect();
         let about: Vec<&String> = about.iter().filter(|w| w.contains("REQUEST/1")).collect();
-        assert_eq!(about.len(), usize::from(!told.is_empty()), "{request}: {about:?}");
-        assert!(about.iter().all(|w| w.contains(told)), "{request}: {about:?}");
+        assert_eq!(
+            about.len(),
+            usize::from(!told.is_empty()),
+            "{request}: {about:?}"
+        );
+        assert!(
+            about.iter().all(|w| w.contains(told)),
+            "{request}: {about:?}"
+        );
     }
 }
 

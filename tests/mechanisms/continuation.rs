@@ -386,8 +386,16 @@ fn a_drive_that_begins_at_a_dead_point_opens_no_loop() {
             let options = options(&["DM(32,4)"], 1e-8);
             let mut s = begin(model(&text), "dead point", options);
             let status = try_to(&mut s, Analysis::Kinematic, 1.0, 10);
-            let open = s.run.column("DM(32,4)").unwrap().iter().fold(0.0_f64, |m, x| m.max(*x));
-            assert!(open < 1e-6 * far, "{crank}, {law}: the loop is open by {open}");
+            let open = s
+                .run
+                .column("DM(32,4)")
+                .unwrap()
+                .iter()
+                .fold(0.0_f64, |m, x| m.max(*x));
+            assert!(
+                open < 1e-6 * far,
+                "{crank}, {law}: the loop is open by {open}"
+            );
             let reason = &s.run.record.stop_reason;
             assert!(
                 status == Status::Completed || reason.contains("JPRIM/4"),

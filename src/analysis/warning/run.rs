@@ -209,7 +209,9 @@ impl RunWarning {
     /// Returns the element or column that its sentence begins with.
     pub(super) fn subject(&self) -> Option<Subject> {
         match self {
-            RunWarning::MotionJumps { motion, .. } | RunWarning::RateAtRest { motion } => Some(ElementKind::Motion.id(*motion).into()),
+            RunWarning::MotionJumps { motion, .. } | RunWarning::RateAtRest { motion } => {
+                Some(ElementKind::Motion.id(*motion).into())
+            }
             RunWarning::MethodReplaced(d) | RunWarning::LockedWithoutMotions(d) => d.subject(),
             RunWarning::ContactsWithoutFreedom(contacts) => contacts.first().map(|&id| id.into()),
             RunWarning::EmptyColumn(unsupported) => Some((&unsupported.asked_by).into()),
