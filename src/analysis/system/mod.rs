@@ -401,7 +401,7 @@ impl System {
 
     /// Returns the row among those that take part that is violated most in position at a state, and
     /// by how much, relative to what counts as one.
-    pub fn worst_kept(&mut self, t: f64, y: &[f64]) -> Option<(usize, f64)> {
+    pub(in crate::analysis) fn worst_kept(&mut self, t: f64, y: &[f64]) -> Option<(usize, f64)> {
         self.set(t, y);
         let scene = self.scene.within(&self.configuration);
         self.recorded.rows.worst_kept(scene, &self.numbers)
