@@ -9,7 +9,7 @@ use super::external_inputs::{ExternalInput, HookKind, SceneDelay, SceneHook};
 use super::history::DelayId;
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program};
-use crate::model::{ElementKind, Formula as ModelFormula, RequestKind, Text};
+use crate::model::{Element, ElementKind, Formula as ModelFormula, RequestKind, Text};
 
 impl Builder<'_> {
     /// Compiles an expression; its index in the scene's formulas.
@@ -157,23 +157,35 @@ impl Builder<'_> {
         self.push(owner, text, recorder.finish(&[value]), vec![place])
     }
 
-    /// REQUEST, FUNCTION=USER: eight components, where there is a closure for it.
+    /// REQUEST, FUNCTION=USER: eight components, where there is a closure for it. One that nobody
+    /// computes harms nobody, and is told.
     pub(super) fn user_requests(&mut self, c: &mut Compiler) {
-        for (id, request) in self
-            .model
-            .active(ElementKind::Request, &self.model.requests)
-        {
-            let RequestKind::User(user) = &request.kind else {
-                continue;
-            };
-            // one that nobody computes harms nobody
-            let before = c.errors.len();
-            let owner = Asker::argument(ElementKind::Request.id(id), "FUNCTION");
-            let all = self.user(c, &owner, user, 8, &[]);
-            if c.errors.len() == before {
-                self.scene.requests.insert(id, all);
-            } else {
-                c.errors.truncate(before);
+        let model = self.model;
+        for (n, request) in model.active(ElementKind::Request, &model.requests) {
+            let id = ElementKind::Request.id(n);
+            let takes_user = matches!(request.kind, RequestKind::User(_));
+            for (argument, formula) in request.formulas() {
+                let asker = Asker::argument(id, argument);
+                let by_user = matches!(formula, ModelFormula::User { .. });
+                let told = match (takes_user, by_user) {
+                    (true, true) if self.hooks.iter().any(|h| h.stands_for(id, formula)) => {
+                        let all = self.user(c, &asker, formula, 8, &[]);
+                        self.scene.requests.insert(n, all);
+                        continue;
+                    }
+                    (false, false) => continue,
+                    (_, true) => Diagnostic::warning(
+                        Cause::UserRoutine,
+                        "USER needs a routine that is not part of the dataset: no column has it",
+                    )
+                    .help("FUNCTION=USER(…), and a closure for it through the library"),
+                    (true, false) => Diagnostic::warning(
+                        Cause::UserRoutine,
+                        "FUNCTION takes USER(…): no column has this expression",
+                    )
+                    .help("expressions stand in F1 to F8: F2=…\\"),
+                };
+                self.scene.warnings.push(told.element(&asker));
             }
         }
     }

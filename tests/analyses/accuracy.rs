@@ -223,3 +223,65 @@ fn numbers_have_bars_where_a_smaller_request_is_too_small() {
     let all = samples("a02_nfourbar_2", "RADAU5", 1e-7);
     assert!(all.iter().all(|(error, bar)| error <= bar));
 }
+
+/// A companion that stops on its way knows nothing of what follows: another one that began where the run is would take the errors so
+/// far for none. Numbers that follow have no bar, and that is told.
+#[test]
+fn what_follows_a_companion_that_strayed_has_no_bar() {
+    let mut options = running::options_by(&["AZ(3,1)"], "DOP853", 1e-6);
+    // more than the long simulation takes, less than its companion does
+    let mut plain = begin(running::model(PENDULUM), "plain", options.clone());
+    go(&mut plain, Analysis::Dynamic, 40.0, 40);
+    options.accuracy = true;
+    let tried = plain.run.record.counts.steps + plain.run.record.counts.rejected_steps;
+    options.max_steps = Some(tried as usize * 11 / 10);
+    let mut s = begin(running::model(PENDULUM), "test", options);
+    for end in [1.0, 40.0, 41.0] {
+        go(&mut s, Analysis::Dynamic, end, 20);
+    }
+    let (time, bars) = (values(&s, "time"), values(&s, "AZ(3,1)±"));
+    assert!(
+        time.iter()
+            .zip(bars)
+            .all(|(t, bar)| *t > 1.0 || bar.is_finite())
+    );
+    assert!(
+        time.iter()
+            .zip(bars)
+            .all(|(t, bar)| *t <= 40.0 || bar.is_nan()),
+        "{bars:?}"
+    );
+    let told = |w: &results::Warning| w.sentence().contains("ends otherwise");
+    assert_eq!(s.run.record.warnings.iter().filter(|w| told(w)).count(), 1);
+}
+
+/// BDF varies its order, and its error goes up and down by three times from a request to the next: at a quarter of the request both
+/// runs may have the same error. Two masses on springs at 21 requests, against DOP853 at 1e-12.
+#[test]
+fn bars_of_bdf_hold_at_every_request() {
+    let text = "PART/2, MASS=1, CM=2, IP=1,1,1, QG=0,0,0.2\nMARKER/2, PART=2\nPART/3, MASS=2, CM=3, IP=1,1,1, QG=0,0,1\nMARKER/3, PART=3\n\
+                JOINT/1, TRANSLATIONAL, I=2, J=1\nJOINT/2, TRANSLATIONAL, I=3, J=1\n\
+                SPRINGDAMPER/1, TRANSLATIONAL, I=3, J=2, K=60, C=0.5, LENGTH=1\nDIFF/1, IC=0.1, FUNCTION=100*(DZ(2,1)-DIF(1))\n\
+                SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=-40*DZ(2,1)-DIF(1)\n";
+    let columns = ["DZ(2,1)", "DZ(3,1)", "VZ(2,1)", "VZ(3,1)", "ACCZ(2,1)"];
+    let mut exact = running::session_by(text, &columns, "DOP853", 1e-12);
+    go(&mut exact, Analysis::Dynamic, 2.0, 60);
+    let (mut held, mut all) = (0, 0);
+    for k in 12..=32 {
+        let request = 10_f64.powf(-0.25 * f64::from(k));
+        let mut options = running::options_by(&columns, "BDF", request);
+        options.accuracy = true;
+        let mut s = begin(running::model(text), "test", options);
+        go(&mut s, Analysis::Dynamic, 2.0, 60);
+        for column in columns {
+            let bars = values(&s, &format!("{column}±"));
+            let numbers = values(&s, column).iter().zip(values(&exact, column));
+            held += numbers
+                .zip(bars)
+                .filter(|((a, b), bar)| (*a - *b).abs() <= **bar)
+                .count();
+            all += bars.len();
+        }
+    }
+    assert!(held as f64 >= 0.99 * all as f64, "{held} of {all}");
+}

@@ -241,6 +241,33 @@ fn a_sequence_of_equilibria_follows_a_motion() {
     assert_eq!(s.run.sequences[1].name, "quasiStatic_001");
 }
 
+/// Between equilibria no time passes: what a rate drives stays where it is, and that is told; of a rate of zero, of a displacement,
+/// and of a single equilibrium there is nothing to tell.
+#[test]
+fn a_rate_that_drives_nothing_between_equilibria_is_told() {
+    let run = |function: &str, end: f64| {
+        let text = format!(
+            "RATE\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\n\
+             JOINT/1, REVOLUTE, I=2, J=1\nMOTION/1, JOINT=1, ROTATION, {function}\nEND\n"
+        );
+        let mut s = session(&text, &["AZ(2,1)"]);
+        go(&mut s, Analysis::Static, end, 2);
+        let told = s
+            .run
+            .record
+            .warnings
+            .iter()
+            .filter(|w| w.sentence().contains("MOTION/1"));
+        (told.count(), last(&s, "AZ(2,1)"))
+    };
+    assert_eq!(run("VELOCITY, FUNCTION=1", 1.0), (1, 0.0));
+    assert_eq!(run("ACCELERATION, FUNCTION=TIME", 1.0), (1, 0.0));
+    assert_eq!(run("VELOCITY, FUNCTION=0.0", 1.0), (0, 0.0));
+    assert_eq!(run("VELOCITY, FUNCTION=1", 0.0), (0, 0.0));
+    let (told, angle) = run("FUNCTION=TIME", 1.0);
+    assert!(told == 0 && (angle - 1.0).abs() < 1e-12);
+}
+
 /// The hook of a crane as datasets write it: a state that is sought makes the force. It follows at once; a state that came to rest in its own time would be too
 /// late for a spring so stiff, and the load would be thrown up and down.
 #[test]

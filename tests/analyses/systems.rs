@@ -5,7 +5,7 @@ use crate::running;
 
 use cognate::analysis::session::state::Saved;
 use cognate::dataset::command::Script;
-use cognate::results::Status;
+use cognate::results::{self, Status};
 use running::{
     Analysis, GROUND, Options, Session, begin, last, mistakes, obeys, options_by, rest, session_by,
     try_to, values, whole,
@@ -338,6 +338,33 @@ fn the_past_of_one_simulation_is_known_in_the_next() {
         "{}",
         last(&s, "DIF(1)")
     );
+}
+
+/// A column that is missing is told, with the reason, also of an expression that stands where USER is meant.
+#[test]
+fn a_request_that_nobody_computes_is_told() {
+    for (request, told) in [
+        ("FUNCTION=USER(1,2)", "REQUEST/1 FUNCTION"),
+        ("F2=TIME\\F3=USER(1)\\", "REQUEST/1 F3"),
+        ("FUNCTION=DZ(2,3,3)", "REQUEST/1 FUNCTION"),
+        ("F2=TIME\\F3=2*TIME\\", ""),
+    ] {
+        let text = format!("REQUEST/1, {request}\n");
+        let mut s = session(&text, &["DZ(2,3,3)"], "DOP853");
+        go(&mut s, 1.0, 2);
+        let warnings = &s.run.record.warnings;
+        let about: Vec<String> = warnings.iter().map(results::Warning::sentence).collect();
+        let about: Vec<&String> = about.iter().filter(|w| w.contains("REQUEST/1")).collect();
+        assert_eq!(
+            about.len(),
+            usize::from(!told.is_empty()),
+            "{request}: {about:?}"
+        );
+        assert!(
+            about.iter().all(|w| w.contains(told)),
+            "{request}: {about:?}"
+        );
+    }
 }
 
 #[test]

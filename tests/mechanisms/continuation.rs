@@ -367,3 +367,40 @@ fn kinematics_hmax_bounds_the_steps() {
     let many = steps(&format!("{text}KINEMATICS/HMAX=0.002\n"));
     assert!((500..540).contains(&many), "{many}");
 }
+
+/// A slider that begins at the dead point of its crank, at rest, and is drawn inwards: the crank may go either way, and none of
+/// both. No row of results stands where the coupler does not reach; where it cannot go on the run stops and names what is in the way.
+#[test]
+fn a_drive_that_begins_at_a_dead_point_opens_no_loop() {
+    for (crank, coupler) in [(0.3, 0.8), (1.0, 3.0), (20.0, 55.0)] {
+        let far = crank + coupler;
+        for law in ["0.3*TIME**2", "0.2*(1-COS(TIME))", "-0.1*TIME**4"] {
+            let text = format!(
+                "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nMARKER/22, PART=2, QP={crank},0,0\n\
+                 PART/3, QG={crank},0,0, MASS=1, CM=3, IP=1,1,1\nMARKER/3, PART=3\nMARKER/32, PART=3, QP={coupler},0,0\n\
+                 PART/4, QG={far},0,0, MASS=1, CM=4, IP=1,1,1\nMARKER/4, PART=4\nMARKER/41, PART=4, REULER=90D,90D,0\n\
+                 MARKER/12, PART=1, REULER=90D,90D,0\nJOINT/1, REVOLUTE, I=2, J=1\nJOINT/2, REVOLUTE, I=3, J=22\n\
+                 JOINT/3, TRANSLATIONAL, I=41, J=12\nJPRIM/4, INLINE, I=32, J=4\n\
+                 MOTION/1, JOINT=3, TRANSLATIONAL, FUNCTION={far}-{crank}*({law})\n"
+            );
+            let options = options(&["DM(32,4)"], 1e-8);
+            let mut s = begin(model(&text), "dead point", options);
+            let status = try_to(&mut s, Analysis::Kinematic, 1.0, 10);
+            let open = s
+                .run
+                .column("DM(32,4)")
+                .unwrap()
+                .iter()
+                .fold(0.0_f64, |m, x| m.max(*x));
+            assert!(
+                open < 1e-6 * far,
+                "{crank}, {law}: the loop is open by {open}"
+            );
+            let reason = &s.run.record.stop_reason;
+            assert!(
+                status == Status::Completed || reason.contains("JPRIM/4"),
+                "{law}: {reason}"
+            );
+        }
+    }
+}

@@ -28,10 +28,8 @@ use crate::numeric::METHODS;
 use crate::scalar::Scalar;
 pub use matching::{Shift, partners, shifts};
 
-/// ρ: the request over that of the companion. A method of order 5 takes 1.4 times as long there.
+/// ρ: the request over that of the companion, where no method worked.
 const TIGHTENING: f64 = 4.0;
-/// The same for methods of order 2, which need more steps for it.
-const TIGHTENING_OF_ORDER_2: f64 = 3.0;
 /// Request below which rounding decides, so that the companion has a larger one instead.
 const LEAST_REQUEST: f64 = 4e-13;
 /// Longest steps of the companion over those of the run, where something else than the request
@@ -69,13 +67,11 @@ pub const LEAST_SIZE: f64 = 1e-3;
 /// request: it is made so small that the method takes √2 times as many where they do.
 pub fn companion_request(error: f64, methods: &[String], has_many_events: bool) -> f64 {
     let worked = |name: &str| methods.iter().any(|n| n == name);
-    let rows = METHODS.iter().filter(|m| worked(m.name));
-    let order = rows.map(|m| m.order).min().unwrap_or(usize::MAX);
-    let usual = if order <= 2 {
-        TIGHTENING_OF_ORDER_2
-    } else {
-        TIGHTENING
-    };
+    let rows = || METHODS.iter().filter(|m| worked(m.name));
+    let order = rows().map(|m| m.order).min().unwrap_or(usize::MAX);
+    // of the method of the least order, which needs most steps for it
+    let slowest = rows().filter(|m| m.order == order).map(|m| m.tightening);
+    let usual = slowest.reduce(f64::max).unwrap_or(TIGHTENING);
     let by_order = match has_many_events && order < usize::MAX {
         true => Scalar::powf(2.0, 0.5 * order as f64),
         false => 1.0,

@@ -12,6 +12,7 @@ use crate::analysis::trajectory::Limited;
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::expr::program::Program;
+use crate::model::{ElementKind, Formula, Level, Motion};
 use crate::numeric::Stats;
 use crate::results::{self, Event, Kind, Status};
 use crate::scene::broken::broken;
@@ -57,6 +58,9 @@ impl Session {
         } else {
             (Kind::Static, vec![span.start])
         };
+        if kind == Kind::QuasiStatic {
+            self.warn_of_rates();
+        }
         let first = system.numbers.clone();
         // the equilibria
         let phase = Phase::begin();
@@ -144,6 +148,21 @@ impl Session {
 }
 
 impl Session {
+    /// Tells of motions that give rates which are not zero.
+    fn warn_of_rates(&mut self) {
+        let motions = self.model.active(ElementKind::Motion, &self.model.motions);
+        let gives_rate = |motion: &Motion| {
+            let none = matches!(&motion.function, Formula::Expression { text, .. }
+                if text.trim().parse() == Ok(0.0));
+            motion.level != Level::Displacement && !none
+        };
+        let rates = motions.filter(|(_, motion)| gives_rate(motion));
+        let rates: Vec<u32> = rates.map(|(n, _)| n).collect();
+        for motion in rates {
+            self.warn(RunWarning::RateAtRest { motion });
+        }
+    }
+
     /// Judges by eigenvalues what becomes of a small push off the equilibrium in which a system is.
     fn judged(
         &mut self,

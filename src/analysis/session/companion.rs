@@ -115,15 +115,19 @@ impl Session {
 
     /// Brings the companion to where the session is, before both simulate.
     pub(super) fn begin_companion(&mut self) -> Begun {
+        let own = self.run.sequences.len();
+        if self.strayed {
+            return Begun { own, companion: 0 };
+        }
         let mut companion = (self.companion.take()).unwrap_or_else(|| self.new_companion());
         companion.model.clone_from(&self.model);
         companion.changing.clone_from(&self.changing);
-        let begun = Begun {
-            own: self.run.sequences.len(),
-            companion: companion.run.sequences.len(),
-        };
+        let companion_begun = companion.run.sequences.len();
         self.companion = Some(companion);
-        begun
+        Begun {
+            own,
+            companion: companion_begun,
+        }
     }
 
     /// Runs the companion after the session, and compares.
@@ -172,7 +176,9 @@ impl Session {
             let others = others.map_or(0..0, |s| s.rows.clone());
             self.compare(&companion, rows, others, &largest);
         }
-        // one that ended otherwise would begin the next simulation elsewhere
+        // one that ended otherwise would begin the next simulation elsewhere, and another one that
+        // begins where this session is would know nothing of the errors so far
+        self.strayed = !follows;
         self.companion = follows.then_some(companion);
     }
 

@@ -192,6 +192,8 @@ pub struct Session {
     shells: Option<Arc<BTreeMap<u32, Result<Shell, String>>>>,
     /// the same at another request, where bars of error are wanted
     companion: Option<Box<Session>>,
+    /// a companion ended otherwise than its simulation: of what follows no error is known
+    strayed: bool,
     /// how this session differs from the one whose companion it is
     pace: Pace,
     /// the last simulation over time
@@ -264,6 +266,7 @@ impl Session {
             activity: Activity::default(),
             shells: None,
             companion: None,
+            strayed: false,
             pace: Pace::default(),
             last: Integrated::default(),
             stiffness: MetStiffness::default(),

@@ -402,6 +402,14 @@ impl System {
         self.recorded.rows.worst_gap(numbers)
     }
 
+    /// Returns the row among those that take part that is violated most in position at a state, and
+    /// by how much, relative to what counts as one.
+    pub(in crate::analysis) fn worst_kept(&mut self, t: f64, y: &[f64]) -> Option<(usize, f64)> {
+        self.set(t, y);
+        let scene = self.scene.within(&self.configuration);
+        self.recorded.rows.worst_kept(scene, &self.numbers)
+    }
+
     /// Tells that so many outputs follow, by an explicit method or from position to position: what
     /// runs at least as often is translated first, where that pays.
     pub(in crate::analysis) fn expect_outputs(&self, n: usize, is_kinematic: bool) {

@@ -99,6 +99,15 @@ impl Rows {
         worst(violation.run(numbers).chunks_exact(2).map(|p| p[0]))
     }
 
+    /// Returns the row among those that take part that is violated most in position at some
+    /// numbers, and by how much, relative to what counts as one.
+    pub fn worst_kept(&mut self, scene: Configured<'_>, numbers: &[f64]) -> Option<(usize, f64)> {
+        let gaps = self.violation.as_mut()?.run(numbers).chunks_exact(2);
+        let gaps = gaps.map(|p| p[0].abs());
+        let rows = scene.configuration.active_rows().zip(gaps);
+        rows.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     /// Returns whether rows that are left out say something that changes.
     pub fn has_left_out(&self) -> bool {
         self.left_out.is_some()

@@ -465,6 +465,13 @@ fn close(system: &mut System, node: &mut Node) -> Result<(), Failure> {
     // the same bits whatever was put out before
     system.project_anew();
     system.put_on_rows_exactly(node.t, &mut node.y)?;
+    // where rows are dependent the least change may be none, beside the rows too
+    if let Some((what, off)) = system.worst_kept(node.t, &node.y)
+        && (off.is_nan() || off > FOLLOWS_TOLERANCE)
+    {
+        let recoverable = true;
+        return Err(Failure { what, recoverable });
+    }
     if let Some((what, off)) = system.worst_left_out(node.t, &node.y)
         && (off.is_nan() || off > FOLLOWS_TOLERANCE)
     {

@@ -67,6 +67,11 @@ pub enum RunWarning {
     },
     /// the rank of the constraints changes
     Rank(RankChange),
+    /// a motion gives a rate, and no time passes between equilibria
+    RateAtRest {
+        /// user's number of the MOTION
+        motion: u32,
+    },
     /// an equilibrium would be left after a small push
     Unstable {
         /// when
@@ -179,7 +184,7 @@ impl RunWarning {
             RunWarning::NoFreedom | RunWarning::Held => "freedom",
             RunWarning::BeyondTolerance { .. } => "redundant",
             RunWarning::LockedWithoutMotions(d) => d.code,
-            RunWarning::ContactsWithoutFreedom(_) => "no_effect",
+            RunWarning::ContactsWithoutFreedom(_) | RunWarning::RateAtRest { .. } => "no_effect",
             RunWarning::NothingToSimulate { .. } => "nothing_to_simulate",
             RunWarning::MotionJumps { .. } => "motion_jumps",
             RunWarning::MethodReplaced(_) => "method",
@@ -204,7 +209,9 @@ impl RunWarning {
     /// Returns the element or column that its sentence begins with.
     pub(super) fn subject(&self) -> Option<Subject> {
         match self {
-            RunWarning::MotionJumps { motion, .. } => Some(ElementKind::Motion.id(*motion).into()),
+            RunWarning::MotionJumps { motion, .. } | RunWarning::RateAtRest { motion } => {
+                Some(ElementKind::Motion.id(*motion).into())
+            }
             RunWarning::MethodReplaced(d) | RunWarning::LockedWithoutMotions(d) => d.subject(),
             RunWarning::ContactsWithoutFreedom(contacts) => contacts.first().map(|&id| id.into()),
             RunWarning::EmptyColumn(unsupported) => Some((&unsupported.asked_by).into()),
@@ -270,6 +277,11 @@ impl RunWarning {
             RunWarning::EmptyColumn(unsupported) => format!(": {}", unsupported.lack),
             RunWarning::Gap { at, .. } => format!(" has no finite value at time {at}"),
             RunWarning::Rank(change) => of_rank(change),
+            RunWarning::RateAtRest { .. } => {
+                ": what it drives stays where it stands, as no time passes between equilibria; \
+                 a displacement would move it"
+                    .into()
+            }
             RunWarning::Unstable { at, directions } => unstable(*at, *directions),
             RunWarning::PushGrows { at, growth, unit } => push_grows(*at, *growth, unit),
             RunWarning::OutsideData {

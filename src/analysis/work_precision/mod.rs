@@ -193,7 +193,8 @@ impl std::fmt::Display for Reason {
             Reason::Budget { expected } => {
                 write!(
                     f,
-                    "about {expected:.1} s expected, more than the budget has left"
+                    "about {} expected, more than the budget has left",
+                    write::duration(*expected)
                 )
             }
             Reason::Slower => f.write_str("the run at a larger request did not end in time"),
