@@ -38,6 +38,7 @@ mod state_values;
 mod states;
 mod stiffness;
 mod stop_reason;
+mod tilts;
 mod swings;
 
 use crate::analysis::linear::{self, Linearization};
@@ -45,6 +46,7 @@ use crate::analysis::session::columns::Columns;
 use crate::analysis::system::{System, closures};
 use crate::analysis::time::output::Output;
 use crate::analysis::warning::AssemblyWarning;
+use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::{Unwatched, Watch};
 use crate::analysis::work_limit::WorkLimit;
 use crate::diagnostic::Error;
@@ -373,6 +375,13 @@ impl Session {
         let (mut system, assembly) = self.prepare(LINEAR, &inputs, &mut Unwatched)?;
         self.first_facts(&system, &assembly);
         let found = linear::linearize(&mut system, &self.model, wanted)?;
+        if let Some(unrest) = found.unrest.clone() {
+            self.warn(RunWarning::Unrest {
+                at: found.time,
+                unrest,
+                units: self.run.units.clone(),
+            });
+        }
         for line in found.table().lines() {
             self.run.log.push(Event::Info(line.to_string()));
         }

@@ -1,0 +1,268 @@
+//! What moves, or is about to, in a state that small motions are taken about.
+//!
+//! Eigenvalues tell what becomes of a push where nothing else happens. About a state that moves or
+//! is no equilibrium they are those of the equations frozen at that instant.
+//!
+//! ```text
+//! |v| > δ ℓ ω               a part moves                                                   (1)
+//! |a| > δ Σⱼ |∂a/∂ξⱼ| sⱼ     a part accelerates: no way of δ explains it                    (2)
+//! |ẋ| > δ Σⱼ |∂ẋ/∂xⱼ| |xⱼ|   a state changes that something reads                           (3)
+//! ```
+//!
+//! ℓ is the size of the mechanism (1 of angles), ω the slowest eigenvalue that is none of a free
+//! motion, and sⱼ the way of ξⱼ where no coordinate moves by more than ℓ or a radian. So neither
+//! units nor stiff parts elsewhere count. Free parts have no slopes: rounding of their loads is left
+//! out beside gravity, or beside all slopes where there is none.
+
+use super::modes::center;
+use super::{Linearization, Small, along, directions, undetermined};
+use crate::analysis::quantity::short;
+use crate::analysis::start::velocities::size_of;
+use crate::analysis::system::{System, complaints};
+use crate::diagnostic::{Diagnostic, Subject};
+use crate::expr::program::{Program, Work};
+use crate::model::Model;
+use crate::results::Units;
+use crate::scene::programs::record;
+use nalgebra::DMatrix;
+use std::sync::Arc;
+
+/// δ: a way beside the size of the mechanism, or an angle, that eigenvalues hardly notice. It is
+/// ERROR of EQUILIBRIUM.
+const NOTICED: f64 = 1e-4;
+/// Eigenvalue beside the largest that counts as one of a free motion.
+const FREE: f64 = 1e-6;
+/// Acceleration beside gravity, or beside all slopes, that counts as rounding of loads.
+const ROUNDING: f64 = 1e-9;
+/// A state below this part of one counts as zero.
+const STATE_OF_NOTHING: f64 = 1e-6;
+
+/// The rate of something that is not at rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rate {
+    /// velocity of a centre of mass, length per time
+    Velocity,
+    /// angular velocity, rad per time
+    AngularVelocity,
+    /// acceleration of a centre of mass
+    Acceleration,
+    /// angular acceleration
+    AngularAcceleration,
+    /// rate of a state
+    StateRate,
+}
+
+impl Rate {
+    /// Returns its name in JSON.
+    pub fn word(self) -> &'static str {
+        match self {
+            Rate::Velocity => "velocity",
+            Rate::AngularVelocity => "angular_velocity",
+            Rate::Acceleration => "acceleration",
+            Rate::AngularAcceleration => "angular_acceleration",
+            Rate::StateRate => "rate",
+        }
+    }
+
+    /// Returns its unit: "mm/sec**2".
+    fn unit(self, units: &Units) -> String {
+        let (of, power) = match self {
+            Rate::Velocity => (units.length.as_str(), ""),
+            Rate::Acceleration => (units.length.as_str(), "**2"),
+            Rate::AngularVelocity => ("rad", ""),
+            Rate::AngularAcceleration => ("rad", "**2"),
+            Rate::StateRate => ("", ""),
+        };
+        if of.is_empty() || units.time.is_empty() {
+            return String::new();
+        }
+        format!(" {of}/{}{power}", units.time)
+    }
+}
+
+impl Unrest {
+    /// Says what it does, after its subject.
+    pub(in crate::analysis) fn words(&self, units: &Units) -> String {
+        let by = format!("{}{}", short(self.value), self.rate.unit(units));
+        match self.rate {
+            Rate::Velocity | Rate::AngularVelocity => format!("moves by {by}"),
+            Rate::Acceleration | Rate::AngularAcceleration => format!("accelerates by {by}"),
+            Rate::StateRate => format!("changes by {by}"),
+        }
+    }
+}
+
+/// The element that is farthest from rest in a state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unrest {
+    /// PART, POINT_MASS, or a state such as `DIFF/3`
+    pub subject: Subject,
+    /// which rate of it is not zero
+    pub rate: Rate,
+    /// its size
+    pub value: f64,
+}
+
+/// Finds what is farthest from rest in the state of a system about which small motions were found.
+///
+/// # Errors
+/// Functions that the equations cannot supply.
+pub(super) fn unrest(
+    system: &mut System,
+    model: &Model,
+    small: &Small,
+    found: &Linearization,
+) -> Result<Option<Unrest>, Vec<Diagnostic>> {
+    if found.modes.is_empty() {
+        return Ok(None);
+    }
+    let program = rates(system, model)?;
+    let mut rates = vec![0.0; program.n_outputs()];
+    program.eval(&system.numbers, &mut Work::default(), &mut rates);
+    let ways = directions(system, small, &[], false);
+    let slopes = along(system, &program, &ways).map_err(|k| undetermined(system, k))?;
+    let here = State {
+        system,
+        small,
+        found,
+        rates,
+        slopes,
+    };
+    let all = here.parts().into_iter().chain(here.states());
+    let worst = all.filter(|(share, _)| *share > 1.0);
+    Ok(worst.max_by(|a, b| a.0.total_cmp(&b.0)).map(|w| w.1))
+}
+
+/// Records v, ω, a, α of each part, ground axes, at its centre of mass; then ẋ.
+fn rates(system: &System, model: &Model) -> Result<Program, Vec<Diagnostic>> {
+    let scene = Arc::clone(&system.scene);
+    let l = scene.layout;
+    let rates = record(system.configured(), |at| {
+        let mut out = Vec::with_capacity(PART * scene.parts.len() + l.n_x);
+        for k in 0..scene.parts.len() {
+            let s = at.part(k, true);
+            let (w, arm) = (s.w_GM, center(&scene, model, at, k) - s.p_GM);
+            let a = s.a_GM + s.alpha_GM.cross(arm) + w.cross(w.cross(arm));
+            for x in [s.v_GM + w.cross(arm), w, a, s.alpha_GM] {
+                out.extend(x.0);
+            }
+        }
+        out.extend(at.rates().split_off(l.n_q + l.n_v));
+        out
+    });
+    rates.map_err(complaints)
+}
+
+/// Numbers of a part among the rates.
+const PART: usize = 12;
+
+/// A state about which small motions were found.
+struct State<'a> {
+    system: &'a System,
+    small: &'a Small,
+    found: &'a Linearization,
+    /// of parts, then of states
+    rates: Vec<f64>,
+    /// of these along z
+    slopes: DMatrix<f64>,
+}
+
+impl State<'_> {
+    /// Returns ω; zero where all motions are free.
+    fn frequency(&self) -> f64 {
+        let sizes = || self.found.modes.iter().map(|m| m.re.hypot(m.im));
+        let largest = sizes().fold(0.0, f64::max);
+        let slowest = sizes().filter(|s| *s > FREE * largest);
+        slowest.reduce(f64::min).unwrap_or(0.0)
+    }
+
+    /// Returns sⱼ, the way of each ξ.
+    fn ways(&self, length: f64) -> Vec<f64> {
+        let scene = &self.system.scene;
+        let mut largest = vec![1.0; scene.layout.n_v];
+        for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
+            if let Some(v) = f.v.filter(|_| !c.angular) {
+                largest[v] = length;
+            }
+        }
+        let way = |z: nalgebra::DVectorView<f64>| {
+            let parts = z.iter().zip(&largest).map(|(z, l)| z.abs() / l);
+            1.0 / parts.fold(f64::MIN_POSITIVE, f64::max)
+        };
+        self.small.z.column_iter().map(way).collect()
+    }
+
+    /// Returns the rates of parts, each over what counts as none.
+    fn parts(&self) -> Vec<(f64, Unrest)> {
+        let scene = &self.system.scene;
+        let (length, frequency) = (size_of(scene), self.frequency());
+        let ways = self.ways(length);
+        // the size of a vector, and of its slopes
+        let size = |first: usize| {
+            let x = &self.rates[first..first + 3];
+            let slopes = |j: usize| self.slopes.fixed_view::<3, 1>(first, j).norm();
+            let explained = ways.iter().enumerate().map(|(j, way)| slopes(j) * way);
+            (x[0].hypot(x[1]).hypot(x[2]), explained.sum::<f64>())
+        };
+        let (mut moves, mut accelerates) = (Vec::new(), Vec::new());
+        for (k, part) in scene.parts.iter().enumerate() {
+            for (turn, unit) in [(0, length), (1, 1.0)] {
+                let rate = [Rate::Velocity, Rate::AngularVelocity][turn];
+                let (value, _) = size(PART * k + 3 * turn);
+                moves.push((value, unit, rate, part.id));
+                let rate = [Rate::Acceleration, Rate::AngularAcceleration][turn];
+                let (value, explained) = size(PART * k + 6 + 3 * turn);
+                accelerates.push((value, explained, unit, rate, part.id));
+            }
+        }
+        let all = accelerates.iter();
+        let slopes = all.map(|(_, e, unit, ..)| e / unit).fold(0.0, f64::max);
+        let gravity = scene.gravity.norm() / length;
+        let idle = ROUNDING * if gravity > 0.0 { gravity } else { slopes };
+        let slow = NOTICED * if frequency > 0.0 { frequency } else { idle.sqrt() };
+        let unrest = |part, rate, value| Unrest {
+            subject: Subject::from(part),
+            rate,
+            value,
+        };
+        let moves = moves.into_iter().map(|(value, unit, rate, part)| {
+            (over(value, slow * unit), unrest(part, rate, value))
+        });
+        // what moves is told as that: its acceleration may be all of its motion
+        let moves: Vec<_> = moves.filter(|(share, _)| *share > 1.0).collect();
+        if !moves.is_empty() {
+            return moves;
+        }
+        let accelerates = accelerates.into_iter();
+        let accelerates = accelerates.map(|(value, explained, unit, rate, part)| {
+            let none = (NOTICED * explained).max(idle * unit);
+            (over(value, none), unrest(part, rate, value))
+        });
+        accelerates.collect()
+    }
+
+    /// Returns the rates of states that something reads, each over what counts as none.
+    fn states(&self) -> Vec<(f64, Unrest)> {
+        let l = self.system.scene.layout;
+        let numbers = &self.system.numbers;
+        let (first, n) = (self.rates.len() - l.n_x, self.slopes.ncols() - l.n_x);
+        let is_read = |k: usize| self.found.a.iter().any(|row| row[n + k] != 0.0);
+        let of = |k: usize| {
+            let size = |j: usize| numbers[l.x_at(j)].abs().max(STATE_OF_NOTHING);
+            let explained = (0..l.n_x).map(|j| self.slopes[(first + k, n + j)].abs() * size(j));
+            let value = self.rates[first + k];
+            let unrest = Unrest {
+                subject: Subject::from(self.found.states[n + k].as_str()),
+                rate: Rate::StateRate,
+                value,
+            };
+            (over(value.abs(), NOTICED * explained.sum::<f64>()), unrest)
+        };
+        (0..l.n_x).filter(|k| is_read(*k)).map(of).collect()
+    }
+}
+
+/// Returns how much more a rate is than what counts as none.
+fn over(value: f64, none: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value / none }
+}
