@@ -190,6 +190,7 @@ impl Paper {
         let [x, y] = match name {
             Placed::LeftOut => return,
             Placed::There => point,
+            Placed::Moved(middle) => middle.map(short),
             Placed::Beside(middle) => {
                 let middle = middle.map(short);
                 *text += &format!(

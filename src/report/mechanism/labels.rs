@@ -64,6 +64,8 @@ impl Area {
 pub(super) enum Placed {
     /// at its point
     There,
+    /// over it, with its middle here, where it lies on the picture
+    Moved([f64; 2]),
     /// beside it, with its middle here; a line leads to the point
     Beside([f64; 2]),
     /// there is no room
@@ -91,7 +93,7 @@ pub(super) fn placed(
         let there = at(*point).moved_onto(size);
         let found = match is_free(&there) {
             true if there.middle == *point => Some((there, Placed::There)),
-            true => Some((there, Placed::Beside(there.middle))),
+            true => Some((there, Placed::Moved(there.middle))),
             false => candidates(*point, half, height)
                 .map(at)
                 .find(|area| area.lies_on(size) && is_free(area))
@@ -121,7 +123,7 @@ mod tests {
     fn area(point: [f64; 2], text: &str, placed: Placed, letters: f64) -> Option<Area> {
         let middle = match placed {
             Placed::There => point,
-            Placed::Beside(middle) => middle,
+            Placed::Moved(middle) | Placed::Beside(middle) => middle,
             Placed::LeftOut => return None,
         };
         let width = LETTER_WIDTH * letters * text.chars().count() as f64;
