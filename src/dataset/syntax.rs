@@ -5,8 +5,8 @@
 //! Nothing here knows any statement by name.
 
 use super::frequent;
-pub use crate::encoding::Encoding;
 use crate::diagnostic::{Diagnostic, Span};
+pub use crate::encoding::Encoding;
 use pest::Parser;
 use pest::iterators::Pair;
 

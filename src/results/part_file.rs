@@ -221,3 +221,25 @@ impl Sink for WholeSink {
         self.file.finish()
     }
 }
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_disk_that_is_full_is_told_with_the_file_that_holds_what_it_has_taken() {
+        let full = || disk::OpenOptions::new().write(true).open("/dev/full");
+        let part = PathBuf::from("out/run.csv.part1");
+        for (bytes, is_named) in [(0, false), (4096, true)] {
+            let mut file = PartFile::new(Path::new("out/run.csv"));
+            file.part = Some((part.clone(), full().expect("Linux has it")));
+            file.bytes = bytes;
+            let told = file.append(b"1,2,3").expect_err("it is full");
+            assert_eq!(told.file.as_deref(), Some("out/run.csv"));
+            let help = told.help.concat();
+            assert_eq!(help.contains("run.csv.part1"), is_named, "{help:?}");
+            // which is no file of ours to remove
+            file.part = None;
+        }
+    }
+}

@@ -5,13 +5,13 @@
 //!
 //! ```text
 //! |v| > δ ℓ ω               a part moves                                                   (1)
-//! |a| > δ Σⱼ |∂a/∂ξⱼ| sⱼ     a part accelerates: no way of δ explains it                    (2)
-//! |ẋ| > δ Σⱼ |∂ẋ/∂xⱼ| |xⱼ|   a state changes that something reads                           (3)
+//! |a| > δ Σⱼ |∂a/∂zⱼ| sⱼ     a part accelerates: no change of δ explains it                 (2)
+//! |ẋ| > δ Σⱼ |∂ẋ/∂zⱼ| sⱼ     a state changes that something reads                           (3)
 //! ```
 //!
 //! ℓ is the size of the mechanism (1 of angles), ω the slowest eigenvalue that is none of a free
-//! motion, and sⱼ the way of ξⱼ where no coordinate moves by more than ℓ or a radian. So neither
-//! units nor stiff parts elsewhere count. Free parts have no slopes: rounding of their loads is left
+//! motion. sⱼ is the way of ξⱼ where no coordinate moves by more than ℓ or a radian, ω times that
+//! for ηⱼ, and the size of a state. So neither units nor stiff parts elsewhere count. Free parts have no slopes: rounding of their loads is left
 //! out beside gravity, or beside all slopes where there is none.
 
 use super::modes::center;
@@ -34,7 +34,7 @@ const NOTICED: f64 = 1e-4;
 const FREE: f64 = 1e-6;
 /// Acceleration beside gravity, or beside all slopes, that counts as rounding of loads.
 const ROUNDING: f64 = 1e-9;
-/// A state below this part of one counts as zero.
+/// Least size of a state.
 const STATE_OF_NOTHING: f64 = 1e-6;
 
 /// The rate of something that is not at rest.
@@ -176,7 +176,18 @@ impl State<'_> {
         slowest.reduce(f64::min).unwrap_or(0.0)
     }
 
-    /// Returns sⱼ, the way of each ξ.
+    /// Returns s.
+    fn changes(&self, length: f64) -> Vec<f64> {
+        let l = self.system.scene.layout;
+        let mut all = self.ways(length);
+        let frequency = self.frequency();
+        all.extend(all.clone().into_iter().map(|way| way * frequency));
+        let size = |j: usize| self.system.numbers[l.x_at(j)].abs();
+        all.extend((0..l.n_x).map(|j| size(j).max(STATE_OF_NOTHING)));
+        all
+    }
+
+    /// Returns the way of each ξ.
     fn ways(&self, length: f64) -> Vec<f64> {
         let scene = &self.system.scene;
         let mut largest = vec![1.0; scene.layout.n_v];
@@ -196,12 +207,12 @@ impl State<'_> {
     fn parts(&self) -> Vec<(f64, Unrest)> {
         let scene = &self.system.scene;
         let (length, frequency) = (size_of(scene), self.frequency());
-        let ways = self.ways(length);
+        let changes = self.changes(length);
         // the size of a vector, and of its slopes
         let size = |first: usize| {
             let x = &self.rates[first..first + 3];
             let slopes = |j: usize| self.slopes.fixed_view::<3, 1>(first, j).norm();
-            let explained = ways.iter().enumerate().map(|(j, way)| slopes(j) * way);
+            let explained = changes.iter().enumerate().map(|(j, s)| slopes(j) * s);
             (x[0].hypot(x[1]).hypot(x[2]), explained.sum::<f64>())
         };
         let (mut moves, mut accelerates) = (Vec::new(), Vec::new());
@@ -219,15 +230,20 @@ impl State<'_> {
         let slopes = all.map(|(_, e, unit, ..)| e / unit).fold(0.0, f64::max);
         let gravity = scene.gravity.norm() / length;
         let idle = ROUNDING * if gravity > 0.0 { gravity } else { slopes };
-        let slow = NOTICED * if frequency > 0.0 { frequency } else { idle.sqrt() };
+        let slow = NOTICED
+            * if frequency > 0.0 {
+                frequency
+            } else {
+                idle.sqrt()
+            };
         let unrest = |part, rate, value| Unrest {
             subject: Subject::from(part),
             rate,
             value,
         };
-        let moves = moves.into_iter().map(|(value, unit, rate, part)| {
-            (over(value, slow * unit), unrest(part, rate, value))
-        });
+        let moves = moves
+            .into_iter()
+            .map(|(value, unit, rate, part)| (over(value, slow * unit), unrest(part, rate, value)));
         // what moves is told as that: its acceleration may be all of its motion
         let moves: Vec<_> = moves.filter(|(share, _)| *share > 1.0).collect();
         if !moves.is_empty() {
@@ -244,12 +260,12 @@ impl State<'_> {
     /// Returns the rates of states that something reads, each over what counts as none.
     fn states(&self) -> Vec<(f64, Unrest)> {
         let l = self.system.scene.layout;
-        let numbers = &self.system.numbers;
+        let changes = self.changes(size_of(&self.system.scene));
         let (first, n) = (self.rates.len() - l.n_x, self.slopes.ncols() - l.n_x);
         let is_read = |k: usize| self.found.a.iter().any(|row| row[n + k] != 0.0);
         let of = |k: usize| {
-            let size = |j: usize| numbers[l.x_at(j)].abs().max(STATE_OF_NOTHING);
-            let explained = (0..l.n_x).map(|j| self.slopes[(first + k, n + j)].abs() * size(j));
+            let all = changes.iter().enumerate();
+            let explained = all.map(|(j, s)| self.slopes[(first + k, j)].abs() * s);
             let value = self.rates[first + k];
             let unrest = Unrest {
                 subject: Subject::from(self.found.states[n + k].as_str()),

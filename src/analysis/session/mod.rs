@@ -38,8 +38,8 @@ mod state_values;
 mod states;
 mod stiffness;
 mod stop_reason;
-mod tilts;
 mod swings;
+mod tilts;
 
 use crate::analysis::linear::{self, Linearization};
 use crate::analysis::session::columns::Columns;
@@ -379,6 +379,7 @@ impl Session {
             self.warn(RunWarning::Unrest {
                 at: found.time,
                 unrest,
+                is_settled: self.carried.as_ref().is_some_and(|c| c.at_rest),
                 units: self.run.units.clone(),
             });
         }

@@ -7,8 +7,8 @@
 
 use super::growth::Looks;
 use super::spline_range::Readings;
-use super::tilts::Tilts;
 use super::swings::Swings;
+use super::tilts::Tilts;
 use super::{Session, columns};
 use crate::analysis::system::System;
 use crate::analysis::trajectory::Trajectory;

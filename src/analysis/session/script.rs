@@ -233,19 +233,19 @@ fn located(mut d: Diagnostic, step: &Step) -> Diagnostic {
     d
 }
 
-/// Gives a mistake in the model the place of the last command that has changed its element; without
-/// one it has the place of the element in the dataset, which this is no line of.
+/// Gives a mistake in a model that commands have changed the place of the last one that has changed
+/// its element, else none: a line of the dataset is none of theirs.
 fn blamed(d: Diagnostic, before: &[Step]) -> Diagnostic {
-    if d.file.is_some() {
+    if d.file.is_some() || !before.iter().any(|s| changes(&s.command)) {
         return d;
     }
-    let changes = |s: &&Step| match &s.command {
+    let makes = |s: &&Step| match &s.command {
         Command::Change(record) => {
             (d.element.as_deref()).is_some_and(|e| e.eq_ignore_ascii_case(&record.element()))
         }
         _ => false,
     };
-    let line = before.iter().rev().find(changes).map_or(0, |s| s.line);
+    let line = before.iter().rev().find(makes).map_or(0, |s| s.line);
     let column = usize::from(line > 0);
     Diagnostic {
         line,

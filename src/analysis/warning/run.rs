@@ -90,6 +90,8 @@ pub enum RunWarning {
         at: f64,
         /// the element that is farthest from rest
         unrest: Unrest,
+        /// whether it is a state that statics have found
+        is_settled: bool,
         /// units of the model
         units: Units,
     },
@@ -303,7 +305,12 @@ impl RunWarning {
                 short(*since),
                 short(tilt.to_degrees())
             ),
-            RunWarning::Unrest { at, unrest, units } => not_at_rest(*at, unrest, units),
+            RunWarning::Unrest {
+                at,
+                unrest,
+                is_settled,
+                units,
+            } => not_at_rest(*at, (unrest, units), *is_settled),
             RunWarning::OutsideData {
                 spline,
                 range,
@@ -381,10 +388,12 @@ fn push_grows(at: f64, [rate, frequency]: [f64; 2], unit: &str) -> String {
 }
 
 /// Returns what is not at rest in the state that a system was linearized about.
-fn not_at_rest(at: f64, unrest: &Unrest, units: &Units) -> String {
+fn not_at_rest(at: f64, (unrest, units): (&Unrest, &Units), is_settled: bool) -> String {
     let advice = match unrest.rate {
-        Rate::Velocity | Rate::AngularVelocity => "",
-        _ => "; SIMULATE/STATIC, or --static, finds an equilibrium",
+        Rate::Acceleration | Rate::AngularAcceleration if !is_settled => {
+            "; SIMULATE/STATIC, or --static, finds an equilibrium"
+        }
+        _ => "",
     };
     format!(
         " {} at time {}, about which the model is linearized: eigenvalues are those of the equations \

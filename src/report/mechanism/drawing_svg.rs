@@ -171,9 +171,7 @@ impl Paper {
     fn names(&self, drawing: &Drawing, size: [f64; 2]) -> Vec<Placed> {
         let marks = drawing.layers.iter().flat_map(|l| &l.marks);
         let words = marks.filter_map(|mark| match mark {
-            Mark::Word { at, text, .. } => {
-                Some((self.at(*at), written(text, size[0], LETTERS)))
-            }
+            Mark::Word { at, text, .. } => Some((self.at(*at), written(text, size[0], LETTERS))),
             Mark::Faces { .. } | Mark::Stroke { .. } | Mark::Ball { .. } => None,
         });
         let bar = Area {
