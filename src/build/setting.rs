@@ -114,8 +114,8 @@ impl Setting {
     /// Returns the value as an argument takes it.
     ///
     /// # Errors
-    /// A value of another kind, a number that is not finite or out of range, a wrong count, or a word that is none
-    /// of the argument's.
+    /// A value of another kind, a number that is not finite or out of range, a wrong count, or a
+    /// word that is none of the argument's.
     pub(super) fn fitted(&self, argument: &Argument) -> Result<Value, Diagnostic> {
         let kind = argument.kind;
         let misfit = || {

@@ -104,8 +104,8 @@ fn unit_cell(unit: &str) -> String {
 }
 
 /// Writes rows of text cells, quoted where they must be: the first name, too, where it holds either
-/// separator, because a reader takes the first separator outside of quotes, and where it begins with
-/// a byte order mark, which a reader takes for the file's own.
+/// separator, because a reader takes the first separator outside of quotes, and where it begins
+/// with a byte order mark, which a reader takes for the file's own.
 fn to_text(rows: &[Vec<String>], separator: u8) -> String {
     let first = rows.first().and_then(|names| names.first());
     let is_misread = |name: &String| name.contains([',', ';']) || name.starts_with('\u{feff}');

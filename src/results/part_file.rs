@@ -222,10 +222,11 @@ impl Sink for WholeSink {
     }
 }
 
-#[cfg(all(test, target_os = "linux"))]
+#[cfg(test)]
 mod tests {
     use super::*;
 
+    #[cfg(target_os = "linux")]
     #[test]
     fn a_disk_that_is_full_is_told_with_the_file_that_holds_what_it_has_taken() {
         let full = || disk::OpenOptions::new().write(true).open("/dev/full");

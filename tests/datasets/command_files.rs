@@ -207,11 +207,7 @@ fn a_number_out_of_range_is_refused_where_it_stands_in_commands_and_datasets() {
             assert_eq!(d.column, line.len() - value.len() + 1, "{line}");
             assert!(d.message.starts_with(argument), "{}", d.message);
         }
-        let least = if value.starts_with('-') {
-            &value[1..]
-        } else {
-            "1"
-        };
+        let least = value.strip_prefix('-').unwrap_or("1");
         let right = format!("{statement}/{argument}={least}");
         assert!(
             Script::from_text(&format!("FILE/MODEL=a\n{right}\n")).is_ok(),

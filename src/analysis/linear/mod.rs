@@ -17,8 +17,8 @@ mod modes;
 mod unrest;
 mod write;
 
+pub use crate::analysis::warning::{Rate, Unrest};
 pub(in crate::analysis) use growth::{Growth, growth};
-pub use unrest::{Rate, Unrest};
 
 use crate::analysis::start::assemble;
 use crate::analysis::system::{System, complaints};

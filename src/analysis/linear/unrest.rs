@@ -1,4 +1,4 @@
-//! What moves, or is about to, in a state that small motions are taken about.
+//! The element that is farthest from rest in a state that small motions are taken about.
 //!
 //! Eigenvalues tell what becomes of a push where nothing else happens. About a state that moves or
 //! is no equilibrium they are those of the equations frozen at that instant.
@@ -11,18 +11,18 @@
 //!
 //! ℓ is the size of the mechanism (1 of angles), ω the slowest eigenvalue that is none of a free
 //! motion. sⱼ is the way of ξⱼ where no coordinate moves by more than ℓ or a radian, ω times that
-//! for ηⱼ, and the size of a state. So neither units nor stiff parts elsewhere count. Free parts have no slopes: rounding of their loads is left
-//! out beside gravity, or beside all slopes where there is none.
+//! for ηⱼ, and the size of a state. So neither units nor stiff parts elsewhere count. Free parts have
+//! no slopes: rounding of their loads is left out beside gravity, or beside all slopes where there
+//! is none.
 
 use super::modes::center;
 use super::{Linearization, Small, along, directions, undetermined};
-use crate::analysis::quantity::short;
 use crate::analysis::start::velocities::size_of;
 use crate::analysis::system::{System, complaints};
+use crate::analysis::warning::{Rate, Unrest};
 use crate::diagnostic::{Diagnostic, Subject};
 use crate::expr::program::{Program, Work};
 use crate::model::Model;
-use crate::results::Units;
 use crate::scene::programs::record;
 use nalgebra::DMatrix;
 use std::sync::Arc;
@@ -36,72 +36,6 @@ const FREE: f64 = 1e-6;
 const ROUNDING: f64 = 1e-9;
 /// Least size of a state.
 const STATE_OF_NOTHING: f64 = 1e-6;
-
-/// The rate of something that is not at rest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rate {
-    /// velocity of a centre of mass, length per time
-    Velocity,
-    /// angular velocity, rad per time
-    AngularVelocity,
-    /// acceleration of a centre of mass
-    Acceleration,
-    /// angular acceleration
-    AngularAcceleration,
-    /// rate of a state
-    StateRate,
-}
-
-impl Rate {
-    /// Returns its name in JSON.
-    pub fn word(self) -> &'static str {
-        match self {
-            Rate::Velocity => "velocity",
-            Rate::AngularVelocity => "angular_velocity",
-            Rate::Acceleration => "acceleration",
-            Rate::AngularAcceleration => "angular_acceleration",
-            Rate::StateRate => "rate",
-        }
-    }
-
-    /// Returns its unit: "mm/sec**2".
-    fn unit(self, units: &Units) -> String {
-        let (of, power) = match self {
-            Rate::Velocity => (units.length.as_str(), ""),
-            Rate::Acceleration => (units.length.as_str(), "**2"),
-            Rate::AngularVelocity => ("rad", ""),
-            Rate::AngularAcceleration => ("rad", "**2"),
-            Rate::StateRate => ("", ""),
-        };
-        if of.is_empty() || units.time.is_empty() {
-            return String::new();
-        }
-        format!(" {of}/{}{power}", units.time)
-    }
-}
-
-impl Unrest {
-    /// Says what it does, after its subject.
-    pub(in crate::analysis) fn words(&self, units: &Units) -> String {
-        let by = format!("{}{}", short(self.value), self.rate.unit(units));
-        match self.rate {
-            Rate::Velocity | Rate::AngularVelocity => format!("moves by {by}"),
-            Rate::Acceleration | Rate::AngularAcceleration => format!("accelerates by {by}"),
-            Rate::StateRate => format!("changes by {by}"),
-        }
-    }
-}
-
-/// The element that is farthest from rest in a state.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Unrest {
-    /// PART, POINT_MASS, or a state such as `DIFF/3`
-    pub subject: Subject,
-    /// which rate of it is not zero
-    pub rate: Rate,
-    /// its size
-    pub value: f64,
-}
 
 /// Finds what is farthest from rest in the state of a system about which small motions were found.
 ///
@@ -147,7 +81,7 @@ fn rates(system: &System, model: &Model) -> Result<Program, Vec<Diagnostic>> {
                 out.extend(x.0);
             }
         }
-        out.extend(at.rates().split_off(l.n_q + l.n_v));
+        out.extend(l.state(&at.rates()).x);
         out
     });
     rates.map_err(complaints)

@@ -1,7 +1,6 @@
 //! Warnings of simulations: of motions that jump, of columns without values, of ranks, of methods.
 
-use super::Names;
-use crate::analysis::linear::{Rate, Unrest};
+use super::{Names, Rate, Unrest};
 use crate::analysis::quantity::{amount, place, short};
 use crate::diagnostic::{Diagnostic, Subject};
 use crate::model::{ElementId, ElementKind};
@@ -298,13 +297,7 @@ impl RunWarning {
             RunWarning::Rank(change) => of_rank(change),
             RunWarning::Unstable { at, directions } => unstable(*at, *directions),
             RunWarning::PushGrows { at, growth, unit } => push_grows(*at, *growth, unit),
-            RunWarning::LargeAngles { since, tilt, .. } => format!(
-                ": its law takes AX, AY and AZ for rotations about the axes of J, which holds \
-                 where two of them are small; from time {} on they are not: even the axis that \
-                 tilts least tilts by up to {} deg",
-                short(*since),
-                short(tilt.to_degrees())
-            ),
+            RunWarning::LargeAngles { since, tilt, .. } => large_angles(*since, *tilt),
             RunWarning::Unrest {
                 at,
                 unrest,
@@ -384,6 +377,17 @@ fn push_grows(at: f64, [rate, frequency]: [f64; 2], unit: &str) -> String {
         "the equilibrium at time {at} is stable in stiffness, but a small push grows by e in \
          {within} {time}{swings}: a load that follows the motion, negative damping or a state \
          feeds it"
+    )
+}
+
+/// Returns from when on angles are no rotations, and how far from that they are.
+fn large_angles(since: f64, tilt: f64) -> String {
+    format!(
+        ": its law takes AX, AY and AZ for rotations about the axes of J, which holds where two of \
+         them are small; from time {} on they are not: even the axis that tilts least tilts by up \
+         to {} deg",
+        short(since),
+        short(tilt.to_degrees())
     )
 }
 
