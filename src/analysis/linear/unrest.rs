@@ -11,9 +11,9 @@
 //!
 //! ℓ is the size of the mechanism (1 of angles), ω the slowest eigenvalue that is none of a free
 //! motion. sⱼ is the way of ξⱼ where no coordinate moves by more than ℓ or a radian, ω times that
-//! for ηⱼ, and the size of a state. So neither units nor stiff parts elsewhere count. Free parts have
-//! no slopes: rounding of their loads is left out beside gravity, or beside all slopes where there
-//! is none.
+//! for ηⱼ, and the size of a state. So neither units nor stiff parts elsewhere count. Free parts
+//! have no slopes: rounding of their loads is left out beside gravity, or beside all slopes where
+//! there is none.
 
 use super::modes::center;
 use super::{Linearization, Small, along, directions, undetermined};
