@@ -236,6 +236,8 @@ pub mod clock;
 pub mod diagnostic;
 #[cfg(feature = "solver")]
 mod disk;
+#[cfg(feature = "solver")]
+mod encoding;
 pub mod scalar;
 
 pub use diagnostic::Error;

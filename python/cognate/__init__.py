@@ -20,7 +20,7 @@ from ._errors import (
 )
 from ._expr import expr
 from ._linear import LinearSystem, Mode
-from ._model import Model, Options, Session, run
+from ._model import Model, Options, RunOptions, Session, run
 from ._run import Animation, Run, get_results, read_res, read_results
 from ._sweep import SweepTable, sweep
 from ._verify import Verification
@@ -44,6 +44,7 @@ __all__ = [
     "Options",
     "ResultsError",
     "Run",
+    "RunOptions",
     "Session",
     "SweepTable",
     "Verification",

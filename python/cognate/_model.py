@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ._builder import ModelBuilder
     from ._sweep import SweepTable
 
-__all__ = ["Model", "Options", "Session", "run"]
+__all__ = ["Model", "Options", "RunOptions", "Session", "run"]
 
 #: Kinds of simulations.
 Kind = Literal["transient", "dynamic", "kinematic", "static", "initial_conditions"]
@@ -78,6 +78,19 @@ class Options(TypedDict, total=False):
     name: str
 
 
+class RunOptions(Options, total=False):
+    """Keywords of a run by itself: those of every run, and one that a sweep has for all its runs.
+
+    Attributes
+    ----------
+    threads : int
+        Threads that integrate mechanisms which nothing couples; one where left out. No bit of the
+        results depends on it. The runs of `sweep` have one thread each.
+    """
+
+    threads: int
+
+
 def choices_of(model: Model, options: Options) -> dict[str, Any]:
     """Return all keywords, those that were not given with their defaults."""
     defaults: dict[str, Any] = {
@@ -93,6 +106,7 @@ def choices_of(model: Model, options: Options) -> dict[str, Any]:
         "zero_user": False,
         "piecewise": False,
         "name": Path(model.file).stem if model.file else "run",
+        "threads": None,
     }
     unknown = sorted(set(options) - set(defaults))
     if unknown:
@@ -101,6 +115,9 @@ def choices_of(model: Model, options: Options) -> dict[str, Any]:
     choices = {**defaults, **options}
     if isinstance(choices["columns"], str):
         raise TypeError("columns is a list of expressions, not one text")
+    threads = choices["threads"]
+    if threads is not None and not (isinstance(threads, SupportsIndex) and int(threads) > 0):
+        raise ValueError(f"threads is a whole number from 1 on, not {threads!r}")
     choices["columns"], choices["skip"] = list(choices["columns"]), list(choices["skip"])
     choices["user"] = [
         {"name": name, "inputs": list(inputs), "law": law}
@@ -312,7 +329,7 @@ class Model:
         dtout: float | None = None,
         state: str | None = None,
         progress: bool | Progress | None = None,
-        **options: Unpack[Options],
+        **options: Unpack[RunOptions],
     ) -> Run:
         """Simulate once from the initial conditions.
 
@@ -334,7 +351,7 @@ class Model:
             Called with the time that has been reached, ten times a second. None: a bar in
             notebooks.
         **options
-            See `Options`.
+            See `RunOptions`.
 
         Returns
         -------
@@ -365,7 +382,7 @@ class Model:
         *,
         commands: str | None = None,
         progress: bool | Progress | None = None,
-        **options: Unpack[Options],
+        **options: Unpack[RunOptions],
     ) -> Run:
         """Obey a command file (``.acf``) for this model.
 
@@ -378,7 +395,7 @@ class Model:
         progress : bool or callable, optional
             As for `run`.
         **options
-            See `Options`.
+            See `RunOptions`.
 
         Returns
         -------
@@ -402,13 +419,13 @@ class Model:
         session._obey(script, progress)
         return session._finish()
 
-    def session(self, **options: Unpack[Options]) -> Session:
+    def session(self, **options: Unpack[RunOptions]) -> Session:
         """Begin a session: simulations one after another, each from where the last one ended.
 
         Parameters
         ----------
         **options
-            See `Options`.
+            See `RunOptions`.
 
         Returns
         -------
@@ -462,7 +479,7 @@ class Model:
         inputs: int | None = None,
         outputs: int | None = None,
         damping: bool = True,
-        **options: Unpack[Options],
+        **options: Unpack[RunOptions],
     ) -> LinearSystem:
         """Linearize about the initial conditions, between plant inputs and outputs.
 
@@ -475,7 +492,7 @@ class Model:
         damping : bool
             Keep what depends on velocities.
         **options
-            See `Options`.
+            See `RunOptions`.
 
         Returns
         -------
@@ -493,7 +510,7 @@ class Model:
             session.simulate(kind="static")
         return session.linear(inputs=inputs, outputs=outputs, damping=damping)
 
-    def modes(self, *, static: bool = False, **options: Unpack[Options]) -> list[Mode]:
+    def modes(self, *, static: bool = False, **options: Unpack[RunOptions]) -> list[Mode]:
         """Find eigenvalues and mode shapes about the initial conditions.
 
         Parameters
@@ -501,7 +518,7 @@ class Model:
         static : bool
             About the equilibrium next to the initial conditions.
         **options
-            See `Options`.
+            See `RunOptions`.
 
         Returns
         -------
@@ -545,7 +562,7 @@ class Session:
     model : Model
         The model as it is now.
     **options
-        See `Options`.
+        See `RunOptions`.
 
     Examples
     --------
@@ -556,7 +573,7 @@ class Session:
     >>> session.run["DX(41,22)"]  # doctest: +SKIP
     """
 
-    def __init__(self, model: Model, **options: Unpack[Options]) -> None:
+    def __init__(self, model: Model, **options: Unpack[RunOptions]) -> None:
         self._core = _core.Session(model._core, choices_of(model, options))
         self._model = model._core
 
@@ -720,7 +737,7 @@ def _warn(run: Run, depth: int) -> None:
     warnings.warn(f"{run.status}: {run.stop_reason}", IncompleteRun, stacklevel=depth)
 
 
-def run(path: str | os.PathLike[str], **options: Unpack[Options]) -> Run:
+def run(path: str | os.PathLike[str], **options: Unpack[RunOptions]) -> Run:
     """Run a command file (``.acf``) with the dataset that it names.
 
     Parameters
@@ -728,7 +745,7 @@ def run(path: str | os.PathLike[str], **options: Unpack[Options]) -> Run:
     path : path-like
         The command file.
     **options
-        See `Options`.
+        See `RunOptions`.
 
     Returns
     -------

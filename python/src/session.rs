@@ -33,6 +33,7 @@ pub struct Choices {
     frames: bool,
     max_steps: Option<usize>,
     limit: Option<f64>,
+    threads: Option<usize>,
     skip: Vec<String>,
     zero_user: bool,
     piecewise: bool,
@@ -65,6 +66,7 @@ impl Choices {
             zero_user: self.zero_user,
             max_steps: self.max_steps,
             limit: self.limit,
+            threads: self.threads,
             accuracy: self.accuracy,
             ..Options::default()
         };

@@ -48,6 +48,18 @@ def test_columns_are_checked_before_anything_runs(falling):
             falling.run(**nonsense)
 
 
+def test_threads_of_a_run_change_no_bit_of_it(falling):
+    one = falling.run(end=1.0, steps=20)
+    for run in (falling.run(end=1.0, steps=20, threads=2), falling.session(threads=2)):
+        if isinstance(run, cg.Session):
+            run.simulate(end=1.0, steps=20)
+            run = run.run
+        np.testing.assert_array_equal(run["ball.Z"], one["ball.Z"])
+    for nonsense in (0, -1, 1.5, "2"):
+        with pytest.raises(ValueError, match="threads"):
+            falling.run(end=1.0, threads=nonsense)
+
+
 def test_a_command_file_is_obeyed(slider_crank):
     run = cg.run(ROOT / "examples" / "slider_crank.acf")
     assert run.ok and [kind for _, kind, _ in run.sequences][-2:] == ["kinematic", "dynamic"]

@@ -114,8 +114,8 @@ impl Setting {
     /// Returns the value as an argument takes it.
     ///
     /// # Errors
-    /// A value of another kind, a number that is not finite, a wrong count, or a word that is none
-    /// of the argument's.
+    /// A value of another kind, a number that is not finite or out of range, a wrong count, or a
+    /// word that is none of the argument's.
     pub(super) fn fitted(&self, argument: &Argument) -> Result<Value, Diagnostic> {
         let kind = argument.kind;
         let misfit = || {
@@ -131,7 +131,7 @@ impl Setting {
                 Err(Diagnostic::error("wrong_count", what))
             }
         };
-        Ok(match (kind, self) {
+        let value = match (kind, self) {
             (Kind::Flag, Setting::Flag) => Value::Flag,
             (Kind::Real { .. }, _) => match self.reals().as_deref() {
                 Some(&[x]) => Value::Real(Number::plain(finite(argument, x)?)),
@@ -175,7 +175,10 @@ impl Setting {
             }),
             (Kind::Raw, Setting::Text(text)) => Value::Raw(text.clone()),
             _ => return Err(misfit()),
-        })
+        };
+        let out_of_range = |what| Diagnostic::error("unfit_value", what);
+        argument.admits(&value).map_err(out_of_range)?;
+        Ok(value)
     }
 
     /// Returns the numbers, where there are some.

@@ -1,10 +1,11 @@
 //! Options that several commands take, each written once: how long a run is, how it is integrated,
 //! what is not solved, and what ends it early.
 
-use super::limit;
+use super::{Failure, limit};
 use crate::analysis::session::Options;
 use crate::dataset::command::SimulationKind;
 use crate::model::ElementKind;
+use std::path::Path;
 
 /// The kind of a simulation, on the command line and in a set-up.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
@@ -35,7 +36,7 @@ pub struct SpanArgs {
     #[arg(long, value_name = "TIME")]
     pub end: Option<f64>,
     /// Output steps, for a dataset without command file
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole_from_one)]
     pub steps: Option<usize>,
     /// Kind of simulation, for a dataset without command file
     #[arg(long = "type", value_name = "KIND", value_enum)]
@@ -76,6 +77,34 @@ pub struct LimitArgs {
     /// Processor time after which a run ends with its results so far, and exit code 7: 60s, 2min
     #[arg(long, value_name = "TIME", value_parser = limit::seconds)]
     pub limit: Option<f64>,
+}
+
+/// Reads a whole number from 1 on.
+pub fn whole_from_one(text: &str) -> Result<usize, String> {
+    let found = text.parse().ok().filter(|n| *n > 0);
+    found.ok_or_else(|| "it is a whole number from 1 on".to_owned())
+}
+
+impl SpanArgs {
+    /// Refuses these options beside a file that says itself what is simulated: they would change
+    /// nothing.
+    ///
+    /// # Errors
+    /// One of them is given.
+    pub fn refuse_beside(&self, file: &Path) -> Result<(), Failure> {
+        let given = [
+            (self.end.is_some(), "--end"),
+            (self.steps.is_some(), "--steps"),
+            (self.kind.is_some(), "--type"),
+        ];
+        let Some((_, name)) = given.into_iter().find(|(is_given, _)| *is_given) else {
+            return Ok(());
+        };
+        Err(Failure::usage(format!(
+            "{name} is for a dataset without command file; {} says itself what is simulated",
+            file.display()
+        )))
+    }
 }
 
 /// Returns how many threads to work on: those asked for, else one for each processor.

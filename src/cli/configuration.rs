@@ -80,6 +80,14 @@ pub fn run(args: &Args) -> Outcome {
         None => Asked::Kept,
         Some(acting) => Asked::Recorded(acting),
     };
+    let span = SpanArgs {
+        kind: args.kind,
+        end: None,
+        steps: None,
+    };
+    if run::has_commands(&file) {
+        span.refuse_beside(&file)?;
+    }
     let job = match run::has_commands(&file) {
         true => run::script_with(&file, dataset, asked)?,
         false => run::alone_with(
@@ -87,9 +95,9 @@ pub fn run(args: &Args) -> Outcome {
                 model: &file,
                 dataset,
                 span: SpanArgs {
-                    kind: args.kind,
-                    end: Some(args.at),
-                    steps: None,
+                    // at the start there is nothing to solve
+                    end: Some(if args.at == 0.0 { 1.0 } else { args.at }),
+                    ..span
                 },
             },
             asked,
@@ -105,9 +113,12 @@ pub fn run(args: &Args) -> Outcome {
     let reached = lead(&mut session, &job.steps, args.at);
     let left = reached
         .map_err(|errors| Failure::in_model(&job.reading.dataset, errors.into_diagnostics()))?;
-    let Some(left) = left else {
+    let Some(mut left) = left else {
         return Err(not_reached(&session, args.at));
     };
+    if !run::has_commands(&file) {
+        left.clear();
+    }
     write(args, &session, &left)
 }
 

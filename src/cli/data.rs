@@ -9,6 +9,7 @@
 //! B-spline) and `"order"`.
 
 use crate::diagnostic::Diagnostic;
+use crate::encoding::as_utf8;
 use crate::expr::interpolation::{Bindings, Curve, CurvePoints, Spline};
 use crate::expr::program::Input;
 use crate::expr::spline::{Ends, Extrapolation};
@@ -133,13 +134,13 @@ fn each_of(
         d.file = Some(file.display().to_string());
         d
     };
-    let text = std::fs::read_to_string(file).map_err(|e| {
+    let bytes = std::fs::read(file).map_err(|e| {
         in_file(Diagnostic::error(
             "file_unreadable",
             format!("cannot be read: {e}"),
         ))
     })?;
-    let value: Value = serde_json::from_str(&text).map_err(|e| {
+    let value: Value = serde_json::from_slice(&as_utf8(bytes)).map_err(|e| {
         let mut d = in_file(bad(format!("no JSON: {e}")));
         (d.line, d.column) = (e.line(), e.column());
         d

@@ -7,7 +7,7 @@ use crate::model::ElementId;
 use crate::report::mechanism::drawing::{Names, SymbolKind, Wanted, drawing};
 use crate::report::mechanism::{Pictured, View, drawing_svg};
 use crate::report::picture::{self, PictureFormat};
-use crate::results::Run;
+use crate::results::{Run, digits_of_six};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -127,7 +127,10 @@ pub fn run(args: &Args) -> Outcome {
     let out = out.unwrap_or_else(|| PathBuf::from(format!("{}_drawing.svg", run.name)));
     let times = &pictured.track.times;
     let last = times.len() - 1;
-    let row = args.at.map_or(last, |at| nearest(times, at));
+    let row = match args.at {
+        Some(at) => row_at(times, at)?,
+        None => last,
+    };
     let wanted = Wanted {
         pale: (0..args.pale).map(|k| k * last / args.pale).collect(),
         names: match args.names {
@@ -198,6 +201,24 @@ fn write(
     picture::write(&text, file)?;
     remark(file.display());
     Ok(())
+}
+
+/// Returns the row whose time is nearest, of several the last.
+///
+/// # Errors
+/// The time lies before the first or after the last.
+fn row_at(times: &[f64], at: f64) -> Result<usize, Failure> {
+    let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
+        return Ok(0);
+    };
+    let near = 1e-9 * (last - first).abs().max(last.abs());
+    if at >= first - near && at <= last + near {
+        return Ok(nearest(times, at));
+    }
+    let [at, first, last] = [at, first, last].map(digits_of_six);
+    Err(Failure::usage(format!(
+        "--at {at}: the run goes from {first} to {last}; --end TIME gives a dataset alone a later end"
+    )))
 }
 
 /// Returns the row whose time is nearest; of several the last.

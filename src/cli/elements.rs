@@ -145,8 +145,10 @@ pub fn list(model: &Model, kinds: &[ElementKind]) -> String {
 
 fn as_json(model: &Model, kinds: &[ElementKind]) -> serde_json::Value {
     let all = of_kinds(model, kinds).into_iter();
+    let mut named_by = model.each_named_by();
     let all = all.map(|(id, name, names)| {
-        let by: Vec<String> = model.named_by(id).iter().map(ToString::to_string).collect();
+        let by = named_by.remove(&id).unwrap_or_default();
+        let by: Vec<String> = by.iter().map(ToString::to_string).collect();
         json!({
             "element": id.to_string(), "name": name, "names": names, "named_by": by,
             "active": model.is_active(id),
@@ -211,8 +213,9 @@ pub fn renamed(reading: &Reading, id: ElementId, name: &str) -> Result<Reading, 
 /// When one does not exist, or others name it that stay.
 pub fn without(reading: &Reading, ids: &[ElementId]) -> Result<Reading, Diagnostic> {
     let mut now = reading.clone();
+    let mut named_by = reading.model.each_named_by();
     for &id in ids {
-        let mut by = reading.model.named_by(id);
+        let mut by = named_by.remove(&id).unwrap_or_default();
         by.retain(|other| !ids.contains(other));
         if !by.is_empty() {
             let by: Vec<String> = by.iter().map(ToString::to_string).collect();

@@ -55,7 +55,11 @@ pub fn run(args: &Args) -> Outcome {
         true => Asked::Kept,
         false => Asked::New(&args.loads),
     };
-    let job = match run::has_commands(&args.model) {
+    let is_command = run::has_commands(&args.model);
+    if is_command {
+        args.span.refuse_beside(&args.model)?;
+    }
+    let job = match is_command {
         true => run::script_with(&args.model, None, asked)?,
         false => run::standing_with(&args.single(), asked)?,
     };
@@ -101,7 +105,10 @@ pub fn run(args: &Args) -> Outcome {
     }
     remark(format!("{} and {}", files[0].display(), files[1].display()));
     if left.is_empty() {
-        remark("the commands hold no simulation: --end TIME adds one");
+        remark(match is_command {
+            true => "the commands hold no simulation",
+            false => "the commands hold no simulation: --end TIME adds one",
+        });
     }
     Ok(Exit::Done)
 }

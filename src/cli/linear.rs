@@ -1,7 +1,7 @@
 //! `cognate linear`: small motions of a model about a state, as eigenvalues and as a linear system.
 
 use super::arguments::UnsolvedArgs;
-use super::{Exit, Failure, Outcome, interrupt, modes, remark, run, say, width};
+use super::{Exit, Failure, Outcome, interrupt, modes, remark, run, say, summary, width};
 use crate::analysis::linear::Wanted;
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
@@ -92,11 +92,17 @@ pub fn run(args: &Args) -> Outcome {
         shapes: None,
     };
     let found = session.linearize(&wanted).map_err(in_model)?;
+    let warnings = summary::warnings(&session.run.record.warnings);
     if args.json {
-        say(&json::text(&found.json()));
+        let mut all = found.json();
+        all["warnings"] = warnings.clone().into();
+        say(&json::text(&all));
     } else {
         let time = &session.run.units.time;
         say(&modes::text(&found, time, width::columns()));
+    }
+    for warning in warnings {
+        remark(format!("warning: {warning}"));
     }
     session.linear = vec![(None, true, found)];
     if let Some(dir) = &args.out {

@@ -83,6 +83,9 @@ impl Source {
     /// When a file has mistakes, or the model cannot work.
     pub fn get(&self) -> Result<Moved, Failure> {
         let is_dataset = has_ending(&self.file, "adm");
+        if !is_dataset {
+            self.span.refuse_beside(&self.file)?;
+        }
         if !is_dataset && !run::has_commands(&self.file) {
             let run = results::read(&self.file)?;
             let (file, model) = self.model_of(&run)?;

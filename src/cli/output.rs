@@ -340,7 +340,15 @@ impl Growing {
         let tables = Format::names(true).into_iter();
         let mut mine: Vec<String> = tables.map(|f| table_name(&run.name, f)).collect();
         mine.extend(["msg", "svg", "html"].map(own));
+        let linear = format!("{}_linear", run.name);
+        mine.extend(
+            self.folder
+                .earlier()
+                .filter(|n| n.starts_with(&linear))
+                .cloned(),
+        );
         self.folder.remove_stale(&mine)?;
+        self.folder.keep_claims();
         // the record
         let seconds = &mut run.record.seconds;
         seconds.write = clock.elapsed().as_secs_f64();

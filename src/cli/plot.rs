@@ -65,7 +65,7 @@ pub struct Args {
     #[arg(long)]
     title: Option<String>,
     /// Write a file instead of drawing in the terminal: .svg, .png or .pdf
-    #[arg(long, short, value_name = "FILE", alias = "svg")]
+    #[arg(long, short, value_name = "FILE", alias = "svg", conflicts_with_all = ["statistics", "list"])]
     out: Option<PathBuf>,
     /// Print ends, extremes and means of the columns instead
     #[arg(long)]
@@ -107,6 +107,10 @@ impl From<ShownName> for Shown {
 /// # Errors
 /// When the results cannot be read, have no such column, or no finite value.
 pub fn run(args: &Args) -> Outcome {
+    if args.end.is_some() && !is_model(&args.input) {
+        let what = "--end is the last time for functions of a model; results end where they do";
+        return Err(Failure::usage(what));
+    }
     let setup = setup_of(args)?;
     let mut sources = sources(args, setup.as_ref())?;
     if args.list {

@@ -73,6 +73,7 @@ pub fn run(args: &Args) -> Outcome {
     interrupt::install();
     let clock = Instant::now();
     let job = if run::has_commands(&args.model) {
+        args.span.refuse_beside(&args.model)?;
         run::script(&args.model, args.dataset.as_deref())?
     } else {
         run::alone(&Single {

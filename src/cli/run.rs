@@ -1,6 +1,6 @@
 //! `cognate run`: a model with its commands, from file to results.
 
-use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs};
+use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, whole_from_one};
 use super::doubted;
 use super::limit::{Guard, simulations_to_the_end};
 use super::progress::Progress;
@@ -60,7 +60,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME", value_parser = run_name)]
     name: Option<String>,
     /// Solve N times and report the median time
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole_from_one)]
     repeat: usize,
     #[command(flatten)]
     unsolved: UnsolvedArgs,
@@ -230,6 +230,7 @@ fn job(args: &Args, is_command: bool) -> Result<Job, Failure> {
         false => Asked::New(&args.loads),
     };
     if is_command {
+        args.span.refuse_beside(&args.model)?;
         return script_with(&args.model, args.dataset.as_deref(), asked);
     }
     let single = Single {

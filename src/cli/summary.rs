@@ -288,7 +288,7 @@ const ALIKE: usize = 3;
 
 /// Selects the warnings to show, a few of each kind, those first that name an element; the record
 /// has all of them.
-fn warnings(all: &[Warning]) -> Vec<String> {
+pub(super) fn warnings(all: &[Warning]) -> Vec<String> {
     let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
     let few = |w: &&Warning| {
         let count = seen.entry(w.code).or_default();

@@ -153,6 +153,7 @@ fn table_path(args: &Args) -> Result<(Option<PathBuf>, Option<PathBuf>), Failure
 /// Reads the model and its commands; returns the base of the names of files as well.
 fn open(args: &Args) -> Result<(Sweep, String), Failure> {
     let job = if run::has_commands(&args.model) {
+        args.span.refuse_beside(&args.model)?;
         run::script(&args.model, None)?
     } else {
         run::alone(&Single {

@@ -83,16 +83,17 @@ impl Table {
 
     /// Prints some columns.
     fn lines(&self, columns: &[usize]) -> String {
+        let shape = |&column: &usize| (column, self.width(column), self.is_text(column));
+        let shapes: Vec<_> = columns.iter().map(shape).collect();
         let mut text = String::new();
         for row in &self.rows {
             let mut line = String::new();
-            for &column in columns {
+            for &(column, width, is_text) in &shapes {
                 let cell = row.get(column).map_or("", String::as_str);
-                let width = self.width(column);
                 if !line.is_empty() {
                     line += &" ".repeat(GAP);
                 }
-                if self.is_text(column) {
+                if is_text {
                     line += &format!("{cell:width$}");
                 } else {
                     line += &format!("{cell:>width$}");

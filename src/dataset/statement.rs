@@ -836,14 +836,14 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         choice "EQ" (comparison = Comparison::Equal).group("comparison");
         choice "GE" (comparison = Comparison::GreaterOrEqual).group("comparison");
         choice "LE" (comparison = Comparison::LessOrEqual).group("comparison");
-        angle "ERRor" (error);
+        angle "ERRor" (error).from_zero();
         field "ANGULAR" (angular);
         field "BISECTION" (bisection).idle();
         field "HALT" (halt);
         field "RETURN" (end_simulation);
         field "PRINT" (print);
-        field "DT" (dt);
-        field "STEPSIZE" (stepsize);
+        field "DT" (dt).positive();
+        field "STEPSIZE" (stepsize).positive();
         field "RESTART" (restart);
         field "CODGEN" (codgen).idle();
         field "YYDUMP" (yydump).idle();
@@ -907,12 +907,12 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         named "I3" (formulation).group("formulation");
         named "SI2" (formulation).group("formulation");
         named "SI1" (formulation).group("formulation");
-        field "ERRor" (error);
-        field "HMAx" (hmax);
-        field "HMIn" (hmin);
-        field "HINit" (hinit);
-        field "KMAX" (kmax);
-        field "MAXIT" (maxit);
+        field "ERRor" (error).positive();
+        field "HMAx" (hmax).positive();
+        field "HMIn" (hmin).from_zero();
+        field "HINit" (hinit).positive();
+        field "KMAX" (kmax).positive();
+        field "MAXIT" (maxit).positive();
         field "ALPHA" (alpha).idle();
         field "BETA" (beta).idle();
         field "GAMMA" (gamma).idle();
@@ -930,12 +930,12 @@ pub static STATEMENTS: &[&dyn Statement] = &[
     single!("EQUILIBRIUM", equilibrium: EquilibriumSettings, {
         set "STATICS" (Kind::Flag, |e| &mut e.rest, |e| &e.rest).group("kind");
         set "DYNAMICS" (Kind::Flag, |e| &mut e.rest, |e| &e.rest).group("kind").idle();
-        angle "ALimit" (alimit);
-        field "TLimit" (tlimit);
-        field "ERRor" (error);
-        field "IMBALANCE" (imbalance);
-        field "MAXIT" (maxit);
-        field "STABILITY" (stability);
+        angle "ALimit" (alimit).positive();
+        field "TLimit" (tlimit).positive();
+        field "ERRor" (error).positive();
+        field "IMBALANCE" (imbalance).positive();
+        field "MAXIT" (maxit).positive();
+        field "STABILITY" (stability).from_zero();
         set "PATTERN" (WORDS, |e| &mut e.rest, |e| &e.rest).idle();
         set "ACCELERATION_ERROR|AERROR" (REAL, |e| &mut e.rest, |e| &e.rest).idle();
         set "KINETIC_ENERGY_ERROR" (REAL, |e| &mut e.rest, |e| &e.rest).idle();
@@ -946,7 +946,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
     }),
     single!("KINEMATICS", kinematics: Settings, {
         set "ERRor" (REAL).idle();
-        set "HMAX" (REAL);
+        set "HMAX" (REAL).positive();
         set "ALimit" (ANGLE).idle();
         set "TLimit" (REAL).idle();
         set "MAXIT" (REAL).idle();
@@ -958,7 +958,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         set "LIST" (Kind::Flag).idle();
     }),
     single!("IC", initial_conditions: Settings, {
-        set "ERRor" (REAL);
+        set "ERRor" (REAL).positive();
         set "MAXIT" (REAL).idle();
         set "PATTERN" (WORDS).idle();
         set "TLimit" (REAL).idle();

@@ -6,6 +6,7 @@
 
 use super::frequent;
 use crate::diagnostic::{Diagnostic, Span};
+pub use crate::encoding::Encoding;
 use pest::Parser;
 use pest::iterators::Pair;
 
@@ -19,81 +20,6 @@ pub struct Source {
     /// how it stood in the file, and is to be written again
     pub encoding: Encoding,
     line_starts: Vec<usize>,
-}
-
-/// The encoding of a file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Encoding {
-    /// UTF-8, with or without a byte order mark, which is then the first character
-    #[default]
-    Utf8,
-    /// a byte per character
-    Latin1,
-    /// two bytes per character, the lower one first or last
-    Utf16 {
-        /// the higher byte stands first
-        big_endian: bool,
-    },
-}
-
-impl Encoding {
-    /// Guesses the encoding of these bytes.
-    ///
-    /// UTF-16 is known by its byte order mark, or, without one, by zero bytes beside the first
-    /// characters, which are plain letters in any dataset. Bytes that would not come back as they
-    /// were are taken as Latin-1.
-    fn of(bytes: &[u8]) -> Self {
-        let wide = |big_endian| Encoding::Utf16 { big_endian };
-        let guess = match *bytes {
-            [0xFF, 0xFE, ..] => wide(false),
-            [0xFE, 0xFF, ..] => wide(true),
-            [a, 0, b, 0, ..] if a > 0 && b > 0 => wide(false),
-            [0, a, 0, b, ..] if a > 0 && b > 0 => wide(true),
-            _ if std::str::from_utf8(bytes).is_ok() => Encoding::Utf8,
-            _ => Encoding::Latin1,
-        };
-        if guess == Encoding::Utf8 {
-            return guess;
-        }
-        match guess.decode(bytes) {
-            Some(text) if guess.encode(&text) == bytes => guess,
-            _ if std::str::from_utf8(bytes).is_ok() => Encoding::Utf8,
-            _ => Encoding::Latin1,
-        }
-    }
-
-    fn decode(self, bytes: &[u8]) -> Option<String> {
-        match self {
-            Encoding::Utf8 => std::str::from_utf8(bytes).ok().map(str::to_owned),
-            Encoding::Latin1 => Some(bytes.iter().map(|&b| b as char).collect()),
-            Encoding::Utf16 { big_endian } => {
-                let (pairs, rest) = bytes.as_chunks::<2>();
-                let number = if big_endian {
-                    u16::from_be_bytes
-                } else {
-                    u16::from_le_bytes
-                };
-                let units: Vec<u16> = pairs.iter().map(|&pair| number(pair)).collect();
-                String::from_utf16(&units).ok().filter(|_| rest.is_empty())
-            }
-        }
-    }
-
-    fn encode(self, text: &str) -> Vec<u8> {
-        match self {
-            Encoding::Latin1 if text.chars().all(|c| (c as u32) < 256) => {
-                text.chars().map(|c| c as u8).collect()
-            }
-            Encoding::Utf16 { big_endian } => {
-                let bytes = |unit: u16| match big_endian {
-                    true => unit.to_be_bytes(),
-                    false => unit.to_le_bytes(),
-                };
-                text.encode_utf16().flat_map(bytes).collect()
-            }
-            Encoding::Utf8 | Encoding::Latin1 => text.as_bytes().to_vec(),
-        }
-    }
 }
 
 /// Part of the bytes that are control characters from which on they are no text: of random bytes a

@@ -3,7 +3,7 @@
 
 use super::check::references::named;
 use super::{ById, ElementId, ElementKind, Family, Formula, Model, Part, Place};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// One element names another.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,20 +85,29 @@ impl Model {
     /// Returns the elements that name an element, by a number of theirs or in a function, each
     /// once.
     pub fn named_by(&self, id: ElementId) -> Vec<ElementId> {
-        let by_number = self.each_reference().filter(|r| r.target == id);
-        let by_number = by_number.map(|r| r.element);
-        let in_functions = self.formulas().into_iter().filter(|owned| {
+        self.each_named_by().remove(&id).unwrap_or_default()
+    }
+
+    /// Returns of each element that is named the elements that name it, each once.
+    pub fn each_named_by(&self) -> BTreeMap<ElementId, Vec<ElementId>> {
+        let mut all: BTreeMap<ElementId, Vec<ElementId>> = BTreeMap::new();
+        for reference in self.each_reference() {
+            all.entry(reference.target)
+                .or_default()
+                .push(reference.element);
+        }
+        for owned in self.formulas() {
             let Formula::Expression { text, .. } = owned.formula else {
-                return false;
+                continue;
             };
-            let targets = text.sound_ast().map(|ast| named(ast));
-            targets.is_ok_and(|all| all.iter().any(|(_, target)| *target == id))
-        });
-        let mut all: Vec<ElementId> = by_number
-            .chain(in_functions.map(|owned| owned.element))
-            .collect();
-        all.sort_unstable();
-        all.dedup();
+            for (_, target) in text.sound_ast().map(|ast| named(ast)).unwrap_or_default() {
+                all.entry(target).or_default().push(owned.element);
+            }
+        }
+        for by in all.values_mut() {
+            by.sort_unstable();
+            by.dedup();
+        }
         all
     }
 

@@ -70,12 +70,13 @@ pub fn channels(
             all.x_label = label_of_x(run, x, &plot.x_label, shown);
         }
         let unit_of_x = unit_of_x(run, x)?;
+        let d_x = d_of_x(run, x);
         let curves = plot.curves.into_iter().take(if names.is_empty() {
             MOST_CURVES
         } else {
             names.len()
         });
-        let made = curves.map(|curve| changed(curve, shown, &unit_of_x));
+        let made = curves.map(|curve| changed(curve, shown, (&d_x, &unit_of_x)));
         all.curves.extend(made.map(|mut curve| {
             if sources.len() > 1 {
                 curve.name = format!("{} ({label})", curve.name);
@@ -100,6 +101,14 @@ fn unit_of_x(run: &Run, x: Option<&str>) -> Result<String, Diagnostic> {
         .unwrap_or_default())
 }
 
+/// Returns the differential of x as it is written: `dt` of time.
+fn d_of_x(run: &Run, x: Option<&str>) -> String {
+    match x {
+        Some(name) if run.find(name) != Some(0) => format!("d({name})"),
+        _ => "dt".to_owned(),
+    }
+}
+
 /// Returns the name of the x axis.
 fn label_of_x(run: &Run, x: Option<&str>, label: &str, shown: Shown) -> String {
     match shown {
@@ -117,7 +126,7 @@ fn label_of_x(run: &Run, x: Option<&str>, label: &str, shown: Shown) -> String {
 }
 
 /// Returns a curve as it is to be shown, with its name and its unit.
-fn changed(curve: Curve, shown: Shown, unit_of_x: &str) -> Curve {
+fn changed(curve: Curve, shown: Shown, (d_x, unit_of_x): (&str, &str)) -> Curve {
     let Curve {
         name,
         unit,
@@ -134,13 +143,13 @@ fn changed(curve: Curve, shown: Shown, unit_of_x: &str) -> Curve {
             ..Curve::default()
         },
         Shown::Derivative => Curve {
-            name: format!("d({name})/dt"),
+            name: format!("d({name})/{d_x}"),
             unit: divided(&unit, unit_of_x),
             points: transform::derivative(&points),
             ..Curve::default()
         },
         Shown::Integral => Curve {
-            name: format!("∫{name} dt"),
+            name: format!("∫{name} {d_x}"),
             unit: multiplied(&unit, unit_of_x),
             points: transform::integral(&points),
             ..Curve::default()
@@ -172,6 +181,10 @@ fn with_power<'a>(unit: &'a str, by: &str) -> (&'a str, u32) {
 /// Writes a unit over a power of another.
 fn over(unit: &str, by: &str, power: u32) -> String {
     let unit = if unit.is_empty() { "1" } else { unit };
+    let by = match by.contains('/') {
+        true => format!("({by})"),
+        false => by.to_owned(),
+    };
     match power {
         0 if unit == "1" => String::new(),
         0 => unit.to_owned(),

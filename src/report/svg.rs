@@ -344,15 +344,7 @@ where
 /// end.
 fn fitting(text: &str, letters: u32, width: i32) -> String {
     let letter = LETTER_WIDTH * DRAWN * f64::from(letters);
-    let most = (f64::from(width) / letter).max(8.0) as usize;
-    let n = text.chars().count();
-    if n <= most {
-        return text.to_owned();
-    }
-    let (before, after) = (most / 2, most - most / 2 - 1);
-    let first: String = text.chars().take(before).collect();
-    let last: String = text.chars().skip(n - after).collect();
-    format!("{first}…{last}")
+    super::cut(text, (f64::from(width) / letter).max(8.0) as usize)
 }
 
 /// Draws the names of curves in rows from `top` on; returns the end of the rows.

@@ -5,6 +5,7 @@ use super::part_file::{create_beside, unwritable};
 use super::{Run, msg};
 use crate::diagnostic::Diagnostic;
 use crate::disk;
+use crate::encoding::as_utf8;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -35,7 +36,7 @@ pub fn read(path: &Path) -> Result<Run, Diagnostic> {
     let mut run = if disk::is_folder(path) {
         read_parts(path, &extension, reader)
     } else {
-        contents(path).and_then(|bytes| reader(whole_lines(path, &bytes)))
+        contents(path).and_then(|bytes| reader(&text(&extension, whole_lines(path, bytes))))
     }
     .map_err(in_file)?;
     run.find_bars();
@@ -46,6 +47,14 @@ pub fn read(path: &Path) -> Result<Run, Diagnostic> {
             .unwrap_or_default();
     }
     Ok(run)
+}
+
+/// Returns the contents of a file of text as UTF-8; of others as they are.
+fn text(extension: &str, bytes: Vec<u8>) -> Vec<u8> {
+    match extension {
+        "parquet" => bytes,
+        _ => as_utf8(bytes),
+    }
 }
 
 fn contents(path: &Path) -> Result<Vec<u8>, Diagnostic> {
@@ -77,12 +86,12 @@ fn read_parts(folder: &Path, extension: &str, reader: Reader) -> Result<Run, Dia
 }
 
 /// Returns the contents of a part without a last line that was not completed.
-fn whole_lines<'a>(path: &Path, bytes: &'a [u8]) -> &'a [u8] {
-    let is_text = extension(path) != extension(&whole_name(path));
-    match bytes.iter().rposition(|&b| b == b'\n') {
-        Some(last) if is_text => &bytes[..=last],
-        _ => bytes,
+fn whole_lines(path: &Path, mut bytes: Vec<u8>) -> Vec<u8> {
+    let is_part = extension(path) != extension(&whole_name(path));
+    if let Some(last) = bytes.iter().rposition(|&b| b == b'\n').filter(|_| is_part) {
+        bytes.truncate(last + 1);
     }
+    bytes
 }
 
 /// Returns the name that a part of a file is to have in the end: `run.csv` for `run.csv.part1`.

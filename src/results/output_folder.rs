@@ -133,6 +133,26 @@ impl OutputFolder {
         Ok(())
     }
 
+    /// Returns the names of the files of the earlier run.
+    pub fn earlier(&self) -> impl Iterator<Item = &String> {
+        self.earlier.keys()
+    }
+
+    /// Claims what an earlier run has written that still stands there, as saved states do: a run
+    /// after this one may replace it.
+    pub fn keep_claims(&mut self) {
+        let names = self.earlier.keys().filter(|name| **name != self.record);
+        let standing = names.filter_map(|name| {
+            let path = self.dir.join(name);
+            let stands = self.is_earlier(name, &path);
+            let about = path.symlink_metadata().ok().filter(|_| stands)?;
+            Some((name.clone(), about.len()))
+        });
+        for (name, size) in standing.collect::<Vec<_>>() {
+            self.written.entry(name).or_insert(size);
+        }
+    }
+
     /// Returns names and sizes of the files that were written, for the record.
     pub fn written(&self) -> &BTreeMap<String, u64> {
         &self.written

@@ -7,7 +7,7 @@ use super::format::{Finished, Sink, TableText};
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::disk;
 use crate::disk::File;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -39,17 +39,38 @@ impl PartFile {
     /// # Errors
     /// `file_unwritable`.
     pub fn append(&mut self, bytes: &[u8]) -> Result<(), Diagnostic> {
-        self.try_to_append(bytes)
-            .map_err(|e| unwritable(&self.place, &e))
+        let Err(e) = self.try_to_append(bytes) else {
+            return Ok(());
+        };
+        let d = unwritable(&self.place, &e);
+        Err(match &self.part {
+            Some((part, _)) if self.bytes > 0 => d.help(format!(
+                "what has been written until then stands in {}",
+                part.display()
+            )),
+            _ => d,
+        })
     }
 
     fn try_to_append(&mut self, bytes: &[u8]) -> std::io::Result<()> {
         if self.part.is_none() {
             self.part = Some(create_beside(&self.place)?);
         }
-        if let Some((_, file)) = &mut self.part {
-            file.write_all(bytes)?;
-            self.bytes += bytes.len() as u64;
+        let Some((_, file)) = &mut self.part else {
+            return Ok(());
+        };
+        // piece by piece, so that those are counted that a full disk has taken
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            match file.write(rest) {
+                Ok(0) => return Err(ErrorKind::WriteZero.into()),
+                Ok(n) => {
+                    self.bytes += n as u64;
+                    rest = &rest[n..];
+                }
+                Err(e) if e.kind() == ErrorKind::Interrupted => {}
+                Err(e) => return Err(e),
+            }
         }
         Ok(())
     }
@@ -89,7 +110,7 @@ pub fn create_beside(path: &Path) -> std::io::Result<(PathBuf, File)> {
         match File::create_new(&part) {
             Ok(file) => return Ok((part, file)),
             // a file of that name is somebody's
-            Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => number += 1,
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => number += 1,
             Err(e) => return Err(e),
         }
     }
@@ -198,5 +219,28 @@ impl Sink for WholeSink {
     fn finish(&mut self, run: &Run) -> Result<Finished, Diagnostic> {
         self.file.append((self.document)(run).as_bytes())?;
         self.file.finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_disk_that_is_full_is_told_with_the_file_that_holds_what_it_has_taken() {
+        let full = || disk::OpenOptions::new().write(true).open("/dev/full");
+        let part = PathBuf::from("out/run.csv.part1");
+        for (bytes, is_named) in [(0, false), (4096, true)] {
+            let mut file = PartFile::new(Path::new("out/run.csv"));
+            file.part = Some((part.clone(), full().expect("Linux has it")));
+            file.bytes = bytes;
+            let told = file.append(b"1,2,3").expect_err("it is full");
+            assert_eq!(told.file.as_deref(), Some("out/run.csv"));
+            let help = told.help.concat();
+            assert_eq!(help.contains("run.csv.part1"), is_named, "{help:?}");
+            // which is no file of ours to remove
+            file.part = None;
+        }
     }
 }

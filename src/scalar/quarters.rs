@@ -7,7 +7,7 @@
 //!                              two digits, and f, −½ ≤ f < ½, in the others
 //! ```
 //!
-//! What is left out behind changes f by 2⁻¹³⁷ at most, and no double but zero is nearer to a
+//! Digits that are left out behind change f by 2⁻¹³⁷ at most, and no double but zero is nearer to a
 //! multiple of π/2 than 2⁻⁶² of it: f has 66 right digits at least.
 
 use super::elementary::Twice;

@@ -13,6 +13,7 @@
 use super::Named;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::disk;
+use crate::encoding::as_utf8;
 use crate::expr::Expr;
 use crate::expr::ast::Dialect;
 use crate::expr::program::Input;
@@ -309,7 +310,7 @@ pub(super) fn read_points(file: &Path) -> Result<Vec<[f64; 2]>, String> {
 
 fn contents(file: &Path) -> Result<String, String> {
     let bytes = disk::read(file).map_err(|e| format!("{}: {e}", file.display()))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    Ok(String::from_utf8_lossy(&as_utf8(bytes)).into_owned())
 }
 
 #[cfg(test)]

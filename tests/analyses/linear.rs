@@ -3,7 +3,7 @@
 
 use crate::running;
 
-use cognate::analysis::linear::{Linearization, Wanted};
+use cognate::analysis::linear::{Linearization, Rate, Wanted};
 use cognate::dataset::command::Script;
 use running::{Options, Session, begin, model, obeys, rest};
 use std::f64::consts::{PI, TAU};
@@ -222,4 +222,85 @@ fn equal_frequencies_have_shapes_of_their_own() {
     let shape = |m: usize, p: usize| found.modes[m].parts[p].translation[0][0];
     let determinant = shape(0, 0) * shape(1, 1) - shape(0, 1) * shape(1, 0);
     assert!(determinant.abs() > 1e-3, "{determinant}");
+}
+
+/// Code and sentence of what is told of the state about which a model was linearized.
+fn told(s: &Session) -> Vec<String> {
+    let all = s.run.record.warnings.iter();
+    let all = all.filter(|w| w.code == "not_at_rest");
+    all.map(|w| w.sentence()).collect()
+}
+
+#[test]
+fn a_state_that_moves_or_is_no_equilibrium_is_told_once_with_its_worst_element() {
+    let tilted = pendulum("JOINT/1, REVOLUTE, I=3, J=1\n");
+    let falling = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nACCGRAV/JGRAV=-9.81\n";
+    let beside = format!(
+        "{}PART/12, MASS=1, CM=12, IP=1,1,1\nMARKER/12, PART=12\nACCGRAV/JGRAV=-9.81\n\
+         SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=102, FUNCTION=-1E10*DZ(2,102,102)\n",
+        masses(1)
+    );
+    let coasting = falling
+        .replace("JGRAV=-9.81", "JGRAV=0")
+        .replace("IP=", "VX=1E-3, IP=");
+    let spinning = coasting.replace("VX=1E-3", "WZ=5");
+    let driven = format!(
+        "{}MOTION/1, JOINT=2, TRANSLATION, FUNCTION=TIME\n{}",
+        masses(2),
+        "SFORCE/2, TRANSLATION, ACTIONONLY, I=3, J=103, FUNCTION=-5*DZ(3,103,103)\n"
+    );
+    let state = format!("{}DIFF/1, FUNCTION=1-DIF(1)\n", masses(1));
+    let angular = 9.81 * 1.5 * 0.5 * 2.0 / (0.1 + 2.0 * 1.5_f64.powi(2));
+    for (text, subject, rate, value) in [
+        (&tilted, "PART/2", Rate::AngularAcceleration, angular),
+        (&falling.to_owned(), "PART/2", Rate::Acceleration, 9.81),
+        (&beside, "PART/12", Rate::Acceleration, 9.81),
+        (&coasting, "PART/2", Rate::Velocity, 1e-3),
+        (&spinning, "PART/2", Rate::AngularVelocity, 5.0),
+        (&driven, "PART/2", Rate::Velocity, 1.0),
+        (&state, "DIFF/1", Rate::StateRate, 1.0),
+    ] {
+        let mut s = session(text);
+        let found = linear(&mut s, &Wanted::default());
+        let unrest = found.unrest.as_ref().unwrap_or_else(|| panic!("{text}"));
+        assert_eq!(
+            (unrest.subject.to_string().as_str(), unrest.rate),
+            (subject, rate),
+            "{text}"
+        );
+        close(unrest.value, value, 1e-9);
+        assert_eq!(found.json()["not_at_rest"]["element"], subject);
+        linear(&mut s, &Wanted::default());
+        let told = told(&s);
+        assert!(told.len() == 1 && told[0].starts_with(subject), "{told:?}");
+    }
+}
+
+#[test]
+fn an_equilibrium_is_at_rest_however_it_was_found_and_in_any_units() {
+    let spring = "SPRINGDAMPER/1, TRANSLATION, I=3, J=1, K=50, C=20, LENGTH=0.2\n";
+    for scale in [1e-3, 1.0, 1e3] {
+        let length = |x: f64| format!("{:?}", x * scale);
+        let hanging = format!(
+            "PART/2, MASS=2, CM=2, IP=0.1,0.1,0.1, QG={},0,0\nMARKER/2, PART=2\nMARKER/3, PART=2\n\
+             MARKER/4, PART=2, REULER=90D,90D,0\nMARKER/5, PART=1, REULER=90D,90D,0\n\
+             JOINT/1, TRANSLATIONAL, I=4, J=5\nACCGRAV/IGRAV={}\n{}",
+            length(0.3),
+            length(9.81),
+            spring.replace("LENGTH=0.2", &format!("LENGTH={}", length(0.2)))
+        );
+        // found at once, reached by damping, and not yet there
+        let mut settled = session(&hanging);
+        rest(&mut settled);
+        let mut damped = session(&hanging);
+        running::go(&mut damped, running::Analysis::Dynamic, 12.0, 10);
+        let mut begun = session(&hanging);
+        for s in [&mut settled, &mut damped] {
+            let found = linear(s, &Wanted::default());
+            assert_eq!(found.unrest, None, "{scale}");
+            assert_eq!(told(s), [""; 0]);
+            assert!(found.json()["not_at_rest"].is_null());
+        }
+        assert!(linear(&mut begun, &Wanted::default()).unrest.is_some());
+    }
 }

@@ -35,6 +35,13 @@ pub fn cognate(args: &[&str]) -> Done {
     cognate_with(args, "")
 }
 
+/// What a command did that must succeed.
+pub fn ok(args: &[&str]) -> Done {
+    let done = cognate(args);
+    assert_eq!(done.code, 0, "{args:?}: {}", done.err);
+    done
+}
+
 /// A file of this name in a folder of this test's own.
 pub fn scratch(test: &str, name: &str, contents: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test);

@@ -175,3 +175,85 @@ fn states_are_kept_beside_the_results_whatever_folder_is_named() {
         assert!(said.is_err(), "{refused}");
     }
 }
+
+#[test]
+fn a_number_out_of_range_is_refused_where_it_stands_in_commands_and_datasets() {
+    let wrong = [
+        ("INTEGRATOR", "ERROR", "-1"),
+        ("INTEGRATOR", "HMAX", "0"),
+        ("INTEGRATOR", "HMIN", "-1E-9"),
+        ("INTEGRATOR", "HINIT", "0.0"),
+        ("INTEGRATOR", "KMAX", "0"),
+        ("INTEGRATOR", "MAXIT", "0"),
+        ("EQUILIBRIUM", "ERROR", "-1E-4"),
+        ("EQUILIBRIUM", "IMBALANCE", "0"),
+        ("EQUILIBRIUM", "TLIMIT", "-2"),
+        ("EQUILIBRIUM", "ALIMIT", "-1D"),
+        ("EQUILIBRIUM", "MAXIT", "0"),
+        ("EQUILIBRIUM", "STABILITY", "-1"),
+        ("KINEMATICS", "HMAX", "-1"),
+        ("IC", "ERROR", "0"),
+    ];
+    for (statement, argument, value) in wrong {
+        let line = format!("{statement}/{argument}={value}");
+        let error = Script::from_text(&format!("FILE/MODEL=a\n{line}\n")).expect_err(&line);
+        let text = format!("t\nPART/1, GROUND\n{line}\nEND\n");
+        let in_dataset = cognate::Model::from_text(&text).expect_err(&line);
+        for (error, at) in [(error, 2), (in_dataset, 3)] {
+            let [d] = &error.into_diagnostics()[..] else {
+                panic!("{line}: not one mistake")
+            };
+            assert_eq!((d.code, d.line), ("unfit_value", at), "{line}");
+            assert_eq!(d.column, line.len() - value.len() + 1, "{line}");
+            assert!(d.message.starts_with(argument), "{}", d.message);
+        }
+        let least = value.strip_prefix('-').unwrap_or("1");
+        let right = format!("{statement}/{argument}={least}");
+        assert!(
+            Script::from_text(&format!("FILE/MODEL=a\n{right}\n")).is_ok(),
+            "{right}"
+        );
+    }
+    for (command, column) in [
+        ("SIMULATE/DYNAMIC, END=1, STEPS=0", 32),
+        ("SIMULATE/DYNAMIC, END=1, DTOUT=-1", 32),
+        ("SIMULATE/DYNAMIC, DURATION=0", 28),
+        ("DEACTIVATE/JOINT, RANGE=5,1", 1),
+        ("LINEAR/EIGENSOL, COORDS=0", 1),
+        ("LINEAR/EIGENSOL, COORDS=3,2", 1),
+    ] {
+        let error = Script::from_text(&format!("FILE/MODEL=a\n{command}\n")).expect_err(command);
+        let [d] = &error.into_diagnostics()[..] else {
+            panic!("{command}: not one mistake")
+        };
+        assert_eq!(
+            (d.code, d.line, d.column),
+            ("unfit_value", 2, column),
+            "{command}"
+        );
+    }
+}
+
+#[test]
+fn a_text_that_looks_like_an_argument_with_a_colon_is_doubted() {
+    let doubts = |request: &str| -> Vec<&'static str> {
+        let text = format!("t\nPART/1, GROUND\nREQUEST/1, F2=TIME\\, {request}\nEND\n");
+        let reading = cognate::dataset::read_text(&text);
+        reading.diagnostics.iter().map(|d| d.code).collect()
+    };
+    for doubted in [
+        "CNAMES=\"\",\"x\", RESULTS_NAME:block",
+        "CNAMES=\"\", x, results_n:block",
+        "COMMENT=a block, RESULTS_NAME:block",
+    ] {
+        assert!(doubts(doubted).contains(&"ambiguous_argument"), "{doubted}");
+    }
+    for meant in [
+        "CNAMES=\"\",\"x\", RESULTS_NAME=block",
+        "CNAMES=\"\",\"RESULTS_NAME:block\"",
+        "COMMENT=a block, see: page 3",
+        "COMMENT=RESULTS_NAME:block",
+    ] {
+        assert!(!doubts(meant).contains(&"ambiguous_argument"), "{meant}");
+    }
+}

@@ -602,3 +602,79 @@ fn a_bushing_whose_markers_are_apart_is_doubted_by_the_force_that_this_makes() {
         assert!(fits, "{place} {stiffness}: {found:?} {ending:?}");
     }
 }
+
+/// Elements that are told to read angles where these are no rotations.
+fn told_of_angles(s: &Session) -> Vec<String> {
+    let all = s
+        .run
+        .record
+        .warnings
+        .iter()
+        .filter(|w| w.code == "large_angles");
+    all.filter_map(|w| w.subject.as_ref().map(ToString::to_string))
+        .collect()
+}
+
+#[test]
+fn laws_of_angles_are_doubted_where_markers_turn_about_two_axes_and_not_about_one() {
+    let model = |law: &str, torque: [f64; 3]| {
+        let [x, y, z] = torque;
+        format!(
+            "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nMARKER/9, PART=1, FLOATING\n{law}\
+             GFORCE/9, I=2, JFLOAT=9, RM=1, FX=0\\FY=0\\FZ=0\\TX={x:?}\\TY={y:?}\\TZ={z:?}\n"
+        )
+    };
+    let diagonal = |k: [f64; 6]| {
+        by_columns(&std::array::from_fn(|r| {
+            std::array::from_fn(|c| if r == c { k[r] } else { 0.0 })
+        }))
+    };
+    let stiff = diagonal([9.0, 9.0, 9.0, 5.0, 5.0, 5.0]);
+    let bushing = "BUSHING/1, I=2, J=1, K=9,9,9, KT=5,5,5, CT=2,2,2\n".to_owned();
+    let field = format!("FIELD/1, I=2, J=1, CRATIO=0.5, KMATRIX={stiff}\n");
+    for (law, name) in [(&bushing, "BUSHING/1"), (&field, "FIELD/1")] {
+        for (torque, is_told) in [
+            ([9.0, 9.0, 0.0], true),
+            ([0.0, 9.0, -9.0], true),
+            ([9.0, 0.0, 0.0], false),
+            ([0.0, 9.0, 0.0], false),
+            ([0.0, 0.0, 9.0], false),
+            ([0.4, 0.4, 9.0], false),
+            ([0.4, 0.4, 0.4], false),
+        ] {
+            let s = run(&model(law, torque), &[], Analysis::Dynamic, (0.6, 20), 1e-5);
+            let told = told_of_angles(&s);
+            assert_eq!(
+                told,
+                if is_told { vec![name] } else { vec![] },
+                "{torque:?}"
+            );
+        }
+    }
+    // at rest, too
+    let s = run(
+        &model(&bushing, [4.0, 4.0, 0.0]),
+        &[],
+        Analysis::Static,
+        (0.0, 1),
+        1e-6,
+    );
+    assert_eq!(told_of_angles(&s), ["BUSHING/1"]);
+    // a law of ways alone, or of velocities, reads no angle
+    for law in [
+        "BUSHING/1, I=2, J=1, K=9,9,9, CT=2,2,2\n".to_owned(),
+        format!(
+            "FIELD/1, I=2, J=1, KMATRIX={}\n",
+            diagonal([9.0, 9.0, 9.0, 0.0, 0.0, 0.0])
+        ),
+    ] {
+        let s = run(
+            &model(&law, [9.0, 9.0, 0.0]),
+            &[],
+            Analysis::Dynamic,
+            (0.6, 20),
+            1e-5,
+        );
+        assert_eq!(told_of_angles(&s), [""; 0]);
+    }
+}

@@ -25,6 +25,11 @@ impl Random {
             size
         }
     }
+    /// A number near a whole number of quarter turns.
+    fn beside_quarter_turns(&mut self) -> f64 {
+        let quarters = self.magnitude(0.0, 40.0).round();
+        quarters * std::f64::consts::FRAC_PI_2 * (1.0 + self.magnitude(-54.0, -30.0))
+    }
 }
 
 /// A function: ours over any number, the correctly rounded one, pairs of arguments.
@@ -92,9 +97,7 @@ fn rows() -> Vec<Row> {
                 |r| r.uniform(-4.0, 4.0),
                 |r| r.magnitude(-1074.0, 12.5),
                 |r| r.magnitude(12.5, 40.0),
-                |r| r.magnitude(0.0, 40.0).round()
-                    * std::f64::consts::FRAC_PI_2
-                    * (1.0 + r.magnitude(-54.0, -30.0))
+                |r| r.beside_quarter_turns()
             );
         };
     }

@@ -1,7 +1,7 @@
 //! Exchange with other programs: models and commands that they run, results that they wrote, and this program in the
 //! place of an external solver.
 
-use super::command::{Done, cognate, path, scratch};
+use super::command::{cognate, ok, path, scratch};
 use cognate::results;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -22,12 +22,6 @@ REQUEST/1, VELOCITY, I=20, J=1
 REQUEST/2, F2=DX(20,1)\\F3=DZ(20,1)
 END
 ";
-
-fn ok(args: &[&str]) -> Done {
-    let done = cognate(args);
-    assert_eq!(done.code, 0, "{args:?}: {}", done.err);
-    done
-}
 
 /// A folder of this test with the model alone.
 fn model(test: &str) -> PathBuf {

@@ -1,6 +1,6 @@
 //! Groups of functions: what is in them, groups of groups, and plots of a group at once.
 
-use super::command::{Done, cognate, path, scratch};
+use super::command::{cognate, ok, path, scratch};
 use serde_json::Value;
 use std::path::PathBuf;
 
@@ -20,12 +20,6 @@ fn model(test: &str) -> PathBuf {
     let model = scratch(test, "fall.adm", FALL);
     let _ = std::fs::remove_file(model.with_extension("toml"));
     model
-}
-
-fn ok(args: &[&str]) -> Done {
-    let done = cognate(args);
-    assert_eq!(done.code, 0, "{args:?}: {}", done.err);
-    done
 }
 
 fn listed(model: &str) -> Value {

@@ -1,6 +1,6 @@
 //! Load cases, functions of the user's and set-ups: what acts in a run, and the file that keeps them.
 
-use super::command::{Done, cognate, path, scratch};
+use super::command::{Done, cognate, ok, path, scratch};
 use cognate::results::{self, Run};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -47,12 +47,6 @@ fn toml(model: &Path) -> String {
 
 fn write_toml(model: &Path, text: &str) {
     std::fs::write(model.with_extension("toml"), text).unwrap();
-}
-
-fn ok(args: &[&str]) -> Done {
-    let done = cognate(args);
-    assert_eq!(done.code, 0, "{args:?}: {}", done.err);
-    done
 }
 
 /// Runs to one second, with further words; returns the results.

@@ -153,3 +153,37 @@ fn columns_that_are_not_shown_are_told() {
     let one = cognate(&["plot", path(&table), "--y", "c3", "--out", path(&picture)]);
     assert!(!one.err.contains("columns"), "{}", one.err);
 }
+
+#[test]
+fn a_slope_over_a_column_says_over_which_and_options_without_effect_are_refused() {
+    let table = fall("plot_over_column", "a.csv", 9.0);
+    let told = |shown: &str, more: &[&str]| {
+        let args = [
+            "plot",
+            path(&table),
+            "--y",
+            "drop.X",
+            "--as",
+            shown,
+            "--statistics",
+        ];
+        cognate(&[&args[..], more].concat()).out
+    };
+    assert!(told("derivative", &["--x", "drop.V"]).contains("d(drop.X)/d(drop.V)  mm/(mm/sec)"));
+    assert!(told("integral", &["--x", "drop.V"]).contains("∫drop.X d(drop.V)"));
+    for over_time in [&[][..], &["--x", "time"]] {
+        assert!(told("derivative", over_time).contains("d(drop.X)/dt  mm/sec"));
+        assert!(told("integral", over_time).contains("∫drop.X dt"));
+    }
+    let picture = table.with_file_name("none.svg");
+    let _ = std::fs::remove_file(&picture);
+    for more in [
+        &["--statistics", "--out", path(&picture)][..],
+        &["--list", "--out", path(&picture)],
+        &["--end", "0.5"],
+    ] {
+        let done = cognate(&[&["plot", path(&table)], more].concat());
+        assert_eq!(done.code, 2, "{more:?}: {}", done.err);
+        assert!(!picture.exists(), "{more:?}");
+    }
+}

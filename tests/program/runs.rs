@@ -1,6 +1,6 @@
 //! Runs that a folder keeps: their names, what belongs to them, and how two compare.
 
-use super::command::{Done, cognate, cognate_with, path, scratch};
+use super::command::{Done, cognate, cognate_with, ok, path, scratch};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -29,12 +29,6 @@ fn ran(model: &Path, folder: &Path, more: &[&str]) {
     let args = ["run", path(model), "--end", "1", "--out", path(folder)];
     let done = cognate(&[&args, more].concat());
     assert_eq!(done.code, 0, "{}", done.err);
-}
-
-fn ok(args: &[&str]) -> Done {
-    let done = cognate(args);
-    assert_eq!(done.code, 0, "{}", done.err);
-    done
 }
 
 /// Names of the files in a folder, in order.

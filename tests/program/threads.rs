@@ -1,6 +1,6 @@
 //! Mechanisms that nothing couples on several threads: the same bytes in every file of results.
 
-use super::command::{cognate, path, scratch};
+use super::command::{ok, path, scratch};
 use std::fmt::Write as _;
 
 #[test]
@@ -33,8 +33,7 @@ fn threads_change_no_byte_of_the_results_and_the_log_tells_of_mechanisms_apart()
             "csv,res,json",
         ];
         let more = ["--threads", threads, "--out", path(&out), "--quiet"];
-        let done = cognate(&[&args[..], &more].concat());
-        assert_eq!(done.code, 0, "{}", done.err);
+        ok(&[&args[..], &more].concat());
         let read = |name| std::fs::read(out.join(name)).expect("results");
         let log = String::from_utf8(read("balls.msg")).expect("text");
         assert!(log.contains("24 mechanisms that nothing couples"), "{log}");

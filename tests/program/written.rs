@@ -1,7 +1,7 @@
 //! Tables of a run: written while it goes on, in every format with the same numbers, and there
 //! whatever ends it.
 
-use crate::command::{cognate, path, scratch};
+use crate::command::{cognate, ok, path, scratch};
 
 use cognate::results::{self, Run};
 use std::path::{Path, PathBuf};
@@ -373,4 +373,172 @@ fn commands_that_do_nothing_are_told_by_a_run() {
     );
     let kinematic = run("FILE/MODEL=p\n\nSIMULATE/KINEMATIC, END=1\n");
     assert!(kinematic.err.contains("p.acf:3:1"), "{}", kinematic.err);
+}
+
+#[test]
+fn results_in_any_encoding_of_text_are_the_same_results() {
+    let text = "time,H\u{f6}he.DX,H\u{fc}he.DX\nsec,mm,mm\n0,1,2\n0.5,3,4\n";
+    let wide = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let encoded: [(&str, Vec<u8>); 5] = [
+        ("plain", text.into()),
+        ("marked", format!("\u{feff}{text}").into()),
+        ("latin", text.chars().map(|c| c as u8).collect()),
+        ("wide", wide(&format!("\u{feff}{text}"))),
+        ("ends", text.replace('\n', "\r\n").into()),
+    ];
+    let file = scratch("encodings", "plain.csv", "");
+    for (name, bytes) in &encoded {
+        std::fs::write(file.with_file_name(format!("{name}.csv")), bytes).unwrap();
+    }
+    let plain = ["csv", "res", "json"].map(|format| {
+        let made = file.with_file_name(format!("made.{format}"));
+        ok(&["convert", path(&file), path(&made)]);
+        (made.clone(), std::fs::read_to_string(made).unwrap())
+    });
+    for (name, _) in &encoded {
+        let table = file.with_file_name(format!("{name}.csv"));
+        let again = file.with_file_name("again.csv");
+        ok(&["convert", path(&table), path(&again)]);
+        assert_eq!(
+            std::fs::read_to_string(&again).unwrap(),
+            plain[0].1,
+            "{name}"
+        );
+    }
+    for (made, text) in &plain {
+        let latin: Vec<u8> = text.chars().map(|c| c as u8).collect();
+        for (name, bytes) in [
+            ("latin", latin),
+            ("marked", format!("\u{feff}{text}").into()),
+        ] {
+            std::fs::write(made, bytes).unwrap();
+            let run = read(made);
+            let names: Vec<&str> = run.columns.iter().map(|c| c.name.as_str()).collect();
+            assert_eq!(
+                names[1..],
+                ["H\u{f6}he.DX", "H\u{fc}he.DX"],
+                "{name} {}",
+                path(made)
+            );
+        }
+    }
+}
+
+#[test]
+fn modes_of_an_earlier_run_go_with_it_and_other_files_of_it_stay_ours() {
+    let (folder, model) = pendulum("modes_stale");
+    let out = folder.join("out");
+    let commands = model.with_extension("acf");
+    let text = "FILE/MODEL=p\nSIMULATE/DYNAMIC, END=0.1, STEPS=2\nLINEAR/EIGENSOL\n\
+                LINEAR/STATEMAT, FILE=plant\nSAVE/SYSTEM=kept\nSTOP\n";
+    std::fs::write(&commands, text).unwrap();
+    let solve = |file: &Path, more: &[&str]| {
+        let args = [
+            "run",
+            path(file),
+            "--out",
+            path(&out),
+            "--name",
+            "p",
+            "--quiet",
+        ];
+        let done = ok(&[&args, more].concat());
+        assert!(!done.err.contains("kept as"), "{}", done.err);
+    };
+    for _ in 0..2 {
+        solve(&commands, &[]);
+        assert!(out.join("p_linear.json").exists());
+        solve(&model, &["--end", "0.1", "--steps", "2"]);
+        assert!(!out.join("p_linear.json").exists());
+        assert!(out.join("plant.json").exists() && out.join("kept.state.json").exists());
+    }
+}
+
+#[test]
+fn an_end_beside_commands_or_results_is_refused_and_not_passed_over() {
+    let (folder, model) = pendulum("no_end_beside");
+    let out = folder.join("out");
+    let commands = model.with_extension("acf");
+    std::fs::write(
+        &commands,
+        "FILE/MODEL=p\nSIMULATE/DYNAMIC, END=0.1, STEPS=2\n",
+    )
+    .unwrap();
+    let results = out.join("p.res");
+    ok(&[
+        "run",
+        path(&commands),
+        "--out",
+        path(&out),
+        "--name",
+        "p",
+        "--format",
+        "res",
+        "--quiet",
+    ]);
+    let (c, r) = (path(&commands), path(&results));
+    let page = out.join("page.html");
+    let dataset = path(&model);
+    for file in [
+        &["run", c, "--out", path(&out)][..],
+        &[
+            "sweep",
+            c,
+            "--set",
+            "PART/2.MASS=1,2",
+            "--measure",
+            "max(DX(20,1))",
+        ],
+        &["report", c, "--out", path(&out)],
+        &["export", c, "--out", path(&out)],
+        &["animate", c, "--out", path(&page)],
+        &["animate", r, "--model", dataset, "--out", path(&page)],
+        &["draw", r, "--model", dataset, "--out", path(&page)],
+    ] {
+        for given in [["--end", "5"], ["--steps", "7"], ["--type", "static"]] {
+            let done = cognate(&[file, &given[..]].concat());
+            assert_eq!(done.code, 2, "{file:?} {given:?}: {}", done.err);
+            assert!(done.err.contains(given[0]), "{}", done.err);
+        }
+    }
+    assert!(!page.exists());
+    let none = cognate(&[
+        "run",
+        dataset,
+        "--end",
+        "1",
+        "--steps",
+        "0",
+        "--out",
+        path(&out),
+    ]);
+    assert_eq!(none.code, 2, "{}", none.err);
+}
+
+#[test]
+fn a_time_beyond_the_run_is_refused_and_the_start_is_a_configuration() {
+    let (folder, model) = pendulum("time_beyond");
+    let (m, out) = (path(&model), folder.join("at.svg"));
+    let draw = |more: &[&str]| cognate(&[&["draw", m, "--out", path(&out)], more].concat());
+    assert_eq!(draw(&["--at", "0"]).code, 0);
+    assert_eq!(draw(&["--end", "1", "--at", "1"]).code, 0);
+    for more in [
+        &["--at", "0.5"][..],
+        &["--end", "1", "--at", "1.1"],
+        &["--at", "-1"],
+    ] {
+        let done = draw(more);
+        assert_eq!(done.code, 2, "{more:?}: {}", done.err);
+    }
+    let begun = folder.join("begun.adm");
+    ok(&["configuration", m, "--at", "0", "--out", path(&begun)]);
+    let at = |file: &Path| {
+        run(file, "1", "4", &["--name", "it", "--format", "csv"]);
+        read(&folder.join("it.csv"))
+    };
+    let (a, b) = (at(&model), at(&begun));
+    for (a, b) in a.columns.iter().zip(&b.columns) {
+        let close = |(x, y): (&f64, &f64)| (x - y).abs() <= 1e-9 * (1.0 + y.abs());
+        assert!(a.values.iter().zip(&b.values).all(close), "{}", a.name);
+    }
 }

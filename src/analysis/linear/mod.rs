@@ -10,12 +10,14 @@
 //!
 //! With every position free, ξ are the changes of the coordinates themselves. An input is a number
 //! added to its VARIABLE, so that whatever else the VARIABLE does goes on. Motions keep moving;
-//! about a state in which things move, A is that of the instant.
+//! about a state in which things move, A is that of the instant, and [`Unrest`] says so.
 
 mod growth;
 mod modes;
+mod unrest;
 mod write;
 
+pub use crate::analysis::warning::{Rate, Unrest};
 pub(in crate::analysis) use growth::{Growth, growth};
 
 use crate::analysis::start::assemble;
@@ -104,6 +106,8 @@ pub struct Linearization {
     pub d: Vec<Vec<f64>>,
     /// by |λ|
     pub modes: Vec<Mode>,
+    /// what is farthest from rest, where the state moves or is no equilibrium and has modes
+    pub unrest: Option<Unrest>,
 }
 
 /// Returns the VARIABLEs of plants, in order.
@@ -257,7 +261,7 @@ pub fn linearize(
         let name = |&id: &u32| ElementKind::Variable.id(id).to_string();
         ids.iter().map(name).collect()
     };
-    Ok(Linearization {
+    let mut found = Linearization {
         time: system.numbers[Layout::TIME],
         states: state_names(&system.scene, &small, &names),
         inputs: named(&input_ids),
@@ -267,7 +271,10 @@ pub fn linearize(
         d: rows(&outputs.columns(n_z, input_ids.len()).into_owned()),
         a: rows(&a),
         modes,
-    })
+        unrest: None,
+    };
+    found.unrest = unrest::unrest(system, model, &small, &found)?;
+    Ok(found)
 }
 
 /// Returns the derivatives of rates and formulas along directions.

@@ -9,8 +9,10 @@ use crate::analysis::system::System;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::scalar::Scalar;
+use crate::scene::Scene;
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
+use crate::space::Vec3;
 use nalgebra::linalg::Schur;
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -126,6 +128,18 @@ pub(super) fn eigenvector(
     Some(x)
 }
 
+/// Returns the centre of mass of a part; where it has none, the origin of its frame.
+pub(super) fn center<S: Scalar>(
+    scene: &Scene,
+    model: &Model,
+    at: &Equations<S>,
+    part: usize,
+) -> Vec3<S> {
+    let cm = model.body(scene.parts[part].id).and_then(|p| p.cm);
+    let cm = cm.and_then(|cm| scene.marker_of.get(&cm));
+    cm.map_or_else(|| at.part(part, false).p_GM, |&m| at.marker(m).p_GM)
+}
+
 /// The motions of parts with z: centre of mass and rotation, ground axes.
 struct PartMotion {
     parts: Vec<String>,
@@ -147,12 +161,10 @@ impl PartMotion {
             }
             let at = Equations::new(scene, &numbers);
             let mut all = Vec::with_capacity(6 * scene.parts.len());
-            for (k, part) in scene.parts.iter().enumerate() {
+            for k in 0..scene.parts.len() {
                 let state = at.part(k, false);
-                let cm = model.body(part.id).and_then(|p| p.cm);
-                let cm = cm.and_then(|cm| scene.marker_of.get(&cm));
-                let cm = cm.map_or(state.p_GM, |&m| at.marker(m).p_GM);
-                let v = state.v_GM + state.w_GM.cross(cm - state.p_GM);
+                let arm = center(&system.scene, model, &at, k) - state.p_GM;
+                let v = state.v_GM + state.w_GM.cross(arm);
                 all.extend(v.0.into_iter().chain(state.w_GM.0));
             }
             all

@@ -43,6 +43,7 @@ impl Linearization {
                 "states": states.collect::<Vec<_>>(),
             })
         };
+        let unrest = |u: &super::Unrest| json!({ "element": u.subject.to_string(), "rate": u.rate.word(), "value": u.value });
         json!({
             "time": self.time,
             "states": self.states,
@@ -53,6 +54,7 @@ impl Linearization {
             "C": self.c,
             "D": self.d,
             "modes": self.modes.iter().map(mode).collect::<Vec<_>>(),
+            "not_at_rest": self.unrest.as_ref().map(unrest),
         })
     }
 

@@ -4,6 +4,7 @@ use super::outcome::counts;
 use super::phase::Phase;
 use super::simulate::Span;
 use super::stop_reason::StopReason;
+use super::tilts::Tilts;
 use super::{LINEAR, Session};
 use crate::analysis::linear::{Growth, growth};
 use crate::analysis::statics::{self, Equilibrium, NoEquilibrium, Settings};
@@ -106,6 +107,7 @@ impl Session {
             method: "EQUILIBRIUM".into(),
             ..Equilibria::default()
         };
+        let mut tilts = Tilts::of(system);
         for &t in times {
             let found = match settle_at(system, &settings, t, watch, &mut all.stats) {
                 Ok(found) => found,
@@ -140,9 +142,11 @@ impl Session {
             let row = std::slice::from_ref(&system.numbers);
             self.more_rows(program, row);
             self.remember((system, &system.configuration.active), row, |_| None);
+            tilts.see(row);
             all.count += 1;
             all.last = Some(system.numbers.clone());
         }
+        self.warn_of_tilts(tilts);
         all
     }
 }

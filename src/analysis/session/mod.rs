@@ -39,12 +39,14 @@ mod states;
 mod stiffness;
 mod stop_reason;
 mod swings;
+mod tilts;
 
 use crate::analysis::linear::{self, Linearization};
 use crate::analysis::session::columns::Columns;
 use crate::analysis::system::{System, closures};
 use crate::analysis::time::output::Output;
 use crate::analysis::warning::AssemblyWarning;
+use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::{Unwatched, Watch};
 use crate::analysis::work_limit::WorkLimit;
 use crate::diagnostic::Error;
@@ -376,6 +378,14 @@ impl Session {
         let (mut system, assembly) = self.prepare(LINEAR, &inputs, &mut Unwatched)?;
         self.first_facts(&system, &assembly);
         let found = linear::linearize(&mut system, &self.model, wanted)?;
+        if let Some(unrest) = found.unrest.clone() {
+            self.warn(RunWarning::Unrest {
+                at: found.time,
+                unrest,
+                is_settled: self.carried.as_ref().is_some_and(|c| c.at_rest),
+                units: self.run.units.clone(),
+            });
+        }
         for line in found.table().lines() {
             self.run.log.push(Event::Info(line.to_string()));
         }

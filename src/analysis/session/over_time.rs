@@ -86,6 +86,7 @@ impl Session {
         }
         self.warn_of_rounding((system, &seen), &trajectory, settings.error);
         self.warn_of_splines(seen.readings);
+        self.warn_of_tilts(seen.tilts);
         // what the next simulation begins with
         let last = last.unwrap_or(first);
         self.keep(system, last);

@@ -8,6 +8,7 @@
 use super::growth::Looks;
 use super::spline_range::Readings;
 use super::swings::Swings;
+use super::tilts::Tilts;
 use super::{Session, columns};
 use crate::analysis::system::System;
 use crate::analysis::trajectory::Trajectory;
@@ -42,6 +43,7 @@ pub(super) struct Seen {
     pub looks: Looks,
     pub swings: Swings,
     pub readings: Readings,
+    pub tilts: Tilts,
     /// time that seeing took, in s
     pub seconds: f64,
 }
@@ -164,6 +166,7 @@ impl Session {
                 _ => Swings::default(),
             },
             readings: self.readings(system),
+            tilts: Tilts::of(system),
             seconds: 0.0,
         };
         let first = std::slice::from_ref(&system.numbers);
@@ -204,6 +207,7 @@ impl Session {
             self.remember((system, active), rows, means);
             self.weigh(&mut seen.balance, system, rows);
             rows.iter().for_each(|row| seen.readings.see(row));
+            seen.tilts.see(rows);
             seen.rows = end;
             self.hand_over(rows.len());
         }

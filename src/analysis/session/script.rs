@@ -145,7 +145,8 @@ pub fn obey(
             Command::Simulate(simulate) => {
                 let ends = |step: &Step| matches!(step.command, Command::Stop);
                 session.is_last = session.ends_with_commands && steps[k + 1..].iter().all(ends);
-                let simulated = session.obey_simulate(simulate, step, &mut before, watch)?;
+                let simulated =
+                    session.obey_simulate(simulate, &steps[..=k], &mut before, watch)?;
                 status = simulated.unwrap_or(status);
                 if simulated.is_some() && (status != Status::Completed || session.halted()) {
                     return Ok(status);
@@ -162,7 +163,10 @@ pub fn obey(
             }
             Command::Stop => break,
             Command::Show(_) => {}
-            Command::Linear(command) => session.obey_linear(command)?,
+            Command::Linear(command) => {
+                let done = session.obey_linear(command);
+                done.map_err(|e| e.map(|d| blamed(d, &steps[..k])))?;
+            }
             Command::Save(Some(name)) => {
                 let file = state::file_name(name);
                 session.saved.insert(file, session.save());
@@ -229,6 +233,28 @@ fn located(mut d: Diagnostic, step: &Step) -> Diagnostic {
     d
 }
 
+/// Gives a mistake in a model that commands have changed the place of the last one that has changed
+/// its element, else none: a line of the dataset is none of theirs.
+fn blamed(d: Diagnostic, before: &[Step]) -> Diagnostic {
+    if d.file.is_some() || !before.iter().any(|s| changes(&s.command)) {
+        return d;
+    }
+    let makes = |s: &&Step| match &s.command {
+        Command::Change(record) => {
+            (d.element.as_deref()).is_some_and(|e| e.eq_ignore_ascii_case(&record.element()))
+        }
+        _ => false,
+    };
+    let line = before.iter().rev().find(makes).map_or(0, |s| s.line);
+    let column = usize::from(line > 0);
+    Diagnostic {
+        line,
+        column,
+        span: None,
+        ..d
+    }
+}
+
 fn second_file() -> Diagnostic {
     let what = "a run has one dataset and one table of results";
     Diagnostic::error(Cause::Unsupported, what).help(
@@ -262,14 +288,17 @@ impl Session {
         self.simulate_with(analysis, end, output, watch)
     }
 
-    /// Obeys SIMULATE; `None`: there was nothing to simulate.
+    /// Obeys SIMULATE, the last of these commands; `None`: there was nothing to simulate.
     fn obey_simulate(
         &mut self,
         simulate: &Simulate,
-        step: &Step,
+        steps: &[Step],
         before: &mut impl FnMut(f64, f64),
         watch: &mut dyn Watch,
     ) -> Result<Option<Status>, Error> {
+        let [earlier @ .., step] = steps else {
+            return Ok(None);
+        };
         let now = self.time();
         if simulate.is_over(now) {
             self.warn(RunWarning::NothingToSimulate {
@@ -284,7 +313,7 @@ impl Session {
         // what only the kind of simulation makes a mistake stands in the command
         let placed = |d: Diagnostic| match d.is(Cause::Freedom) {
             true => located(d, step),
-            false => d,
+            false => blamed(d, earlier),
         };
         let status = self.simulate_with(analysis, end, output, watch);
         status.map(Some).map_err(|e| e.map(placed))

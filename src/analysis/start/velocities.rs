@@ -179,7 +179,7 @@ pub(in crate::analysis) fn velocities_while(
 }
 
 /// Returns the length in which ways are counted beside angles.
-pub(super) fn size_of(scene: &Scene) -> f64 {
+pub(in crate::analysis) fn size_of(scene: &Scene) -> f64 {
     if scene.size > 0.0 { scene.size } else { 1.0 }
 }
 

@@ -7,17 +7,20 @@
 //! assembly       what assembly made of the configuration of the dataset
 //! condition      initial conditions that are not met, or read in another way
 //! run            what a simulation met
+//! unrest         what moves where a model is linearized
 //! verification   what a verification takes for granted
 //! ```
 
 mod assembly;
 mod condition;
 mod run;
+mod unrest;
 mod verification;
 
 pub use assembly::AssemblyWarning;
 pub use condition::ConditionWarning;
 pub use run::{RunWarning, Within, jumps};
+pub use unrest::{Rate, Unrest};
 pub use verification::VerificationWarning;
 
 use crate::diagnostic::{Diagnostic, Subject};

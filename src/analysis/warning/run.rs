@@ -1,10 +1,10 @@
 //! Warnings of simulations: of motions that jump, of columns without values, of ranks, of methods.
 
-use super::Names;
+use super::{Names, Rate, Unrest};
 use crate::analysis::quantity::{amount, place, short};
 use crate::diagnostic::{Diagnostic, Subject};
 use crate::model::{ElementId, ElementKind};
-use crate::results::{Quantity, RankChange, RowChange, digits_of_six};
+use crate::results::{Quantity, RankChange, RowChange, Units, digits_of_six};
 use crate::scene::equations::Unsupported;
 use std::f64::consts::PI;
 
@@ -87,6 +87,26 @@ pub enum RunWarning {
         growth: [f64; 2],
         /// name of the unit of time
         unit: String,
+    },
+    /// small motions are taken about a state that moves or is no equilibrium
+    Unrest {
+        /// when
+        at: f64,
+        /// the element that is farthest from rest
+        unrest: Unrest,
+        /// whether it is a state that statics have found
+        is_settled: bool,
+        /// units of the model
+        units: Units,
+    },
+    /// a law takes angles for rotations about the axes of a marker, where they are none
+    LargeAngles {
+        /// the BUSHING, FIELD or BEAM
+        element: ElementId,
+        /// the first time
+        since: f64,
+        /// angle by which every axis tilts at least, the largest over time, in rad
+        tilt: f64,
     },
     /// a spline is read where it has no data
     OutsideData {
@@ -192,6 +212,8 @@ impl RunWarning {
             RunWarning::Gap { .. } => "no_finite_value",
             RunWarning::Rank(_) => "rank_change",
             RunWarning::Unstable { .. } | RunWarning::PushGrows { .. } => "unstable_equilibrium",
+            RunWarning::Unrest { .. } => "not_at_rest",
+            RunWarning::LargeAngles { .. } => "large_angles",
             RunWarning::OutsideData { .. } => "outside_data",
             RunWarning::BelowRounding { .. } | RunWarning::RoundingAddsUp { .. } => {
                 "below_rounding"
@@ -217,7 +239,10 @@ impl RunWarning {
             RunWarning::EmptyColumn(unsupported) => Some((&unsupported.asked_by).into()),
             RunWarning::Gap { column, .. } => Some(column.as_str().into()),
             RunWarning::EnergyGrows { fed_by, .. } => fed_by.map(Subject::from),
-            RunWarning::OutsideData { element, .. } => Some((*element).into()),
+            RunWarning::Unrest { unrest, .. } => Some(unrest.subject.clone()),
+            RunWarning::OutsideData { element, .. } | RunWarning::LargeAngles { element, .. } => {
+                Some((*element).into())
+            }
             RunWarning::BeyondTolerance {
                 element, equation, ..
             } => Some(Subject::part_of(*element, equation)),
@@ -284,6 +309,13 @@ impl RunWarning {
             }
             RunWarning::Unstable { at, directions } => unstable(*at, *directions),
             RunWarning::PushGrows { at, growth, unit } => push_grows(*at, *growth, unit),
+            RunWarning::LargeAngles { since, tilt, .. } => large_angles(*since, *tilt),
+            RunWarning::Unrest {
+                at,
+                unrest,
+                is_settled,
+                units,
+            } => not_at_rest(*at, (unrest, units), *is_settled),
             RunWarning::OutsideData {
                 spline,
                 range,
@@ -357,6 +389,33 @@ fn push_grows(at: f64, [rate, frequency]: [f64; 2], unit: &str) -> String {
         "the equilibrium at time {at} is stable in stiffness, but a small push grows by e in \
          {within} {time}{swings}: a load that follows the motion, negative damping or a state \
          feeds it"
+    )
+}
+
+/// Returns from when on angles are no rotations, and how far from that they are.
+fn large_angles(since: f64, tilt: f64) -> String {
+    format!(
+        ": its law takes AX, AY and AZ for rotations about the axes of J, which holds where two of \
+         them are small; from time {} on they are not: even the axis that tilts least tilts by up \
+         to {} deg",
+        short(since),
+        short(tilt.to_degrees())
+    )
+}
+
+/// Returns what is not at rest in the state that a system was linearized about.
+fn not_at_rest(at: f64, (unrest, units): (&Unrest, &Units), is_settled: bool) -> String {
+    let advice = match unrest.rate {
+        Rate::Acceleration | Rate::AngularAcceleration if !is_settled => {
+            "; SIMULATE/STATIC, or --static, finds an equilibrium"
+        }
+        _ => "",
+    };
+    format!(
+        " {} at time {}, about which the model is linearized: eigenvalues are those of the equations \
+         as they stand at that instant{advice}",
+        unrest.words(units),
+        short(at)
     )
 }
 

@@ -176,9 +176,9 @@ pub(super) static COMMANDS: &[&dyn Interpret] = &[
         one_of "TRANSIENT" ("kind", kind = Some(SimulationKind::Transient));
         one_of "INITIAL_CONDITIONS|IC" ("kind", kind = Some(SimulationKind::InitialConditions));
         argument "END" (REAL, end);
-        argument "DURATION" (REAL, duration);
-        argument "STEPS" (Kind::Id, steps);
-        argument "DTOUT" (REAL, dtout);
+        argument "DURATION" (REAL, duration).positive();
+        argument "STEPS" (Kind::Id, steps).positive();
+        argument "DTOUT" (REAL, dtout).positive();
     }, |given, _| simulate(&given).map(Command::Simulate)),
     command!("FILE", Files, others: Refused, {
         text "MODEL" (Kind::Text, model);
@@ -203,7 +203,7 @@ pub(super) static COMMANDS: &[&dyn Interpret] = &[
         text "FORMAT" (Kind::Word(&[]), format).idle();
         argument "PINPUT" (Kind::Id, pinput);
         argument "POUTPUT" (Kind::Id, poutput);
-    }, |linear, _| Ok(Command::Linear(linear))),
+    }, linear),
     command!("SAVE", Option<String>, others: Dropped, { system "SYSTEM" (); }, |system, record| named(system, record).map(Command::Save)),
     command!("RELOAD", Option<String>, others: Dropped, { system "SYSTEM" (); }, |system, record| named(system, record).map(Command::Reload)),
     print!("INFO"),
@@ -276,13 +276,23 @@ fn simulate(given: &Simulation) -> Result<Simulate, Box<Diagnostic>> {
             "SIMULATE needs END = time, or DURATION = time",
         );
     }
-    if s.steps == Some(0)
-        || s.dtout.is_some_and(|h| h <= 0.0)
-        || s.duration.is_some_and(|t| t <= 0.0)
-    {
-        return refuse("unfit_value", "STEPS, DTOUT and DURATION must be positive");
-    }
     Ok(s)
+}
+
+/// Returns LINEAR, whose modes are counted from 1, the first before the last.
+fn linear(given: Linear, record: &Record) -> Result<Command, Box<Diagnostic>> {
+    let what = match given.coords[..] {
+        [0, ..] => "COORDS counts modes from 1".to_owned(),
+        [first, last] if last < first => from_last("COORDS", first, last),
+        _ => return Ok(Command::Linear(given)),
+    };
+    let refused = Diagnostic::error("unfit_value", what);
+    Err(Box::new(refused.element(record.element())))
+}
+
+/// Says that of two numbers that go from the first to the last the last comes first.
+fn from_last(argument: &str, first: u32, last: u32) -> String {
+    format!("{argument} = {first}, {last} has nothing between its first and its last number")
 }
 
 fn activate(record: &Record, named: Named, on: bool) -> Result<Command, Box<Diagnostic>> {
@@ -317,6 +327,9 @@ fn activate(record: &Record, named: Named, on: bool) -> Result<Command, Box<Diag
             "missing_argument",
             "ID = numbers or RANGE = first, last is needed".into(),
         );
+    }
+    if let Some([first, last]) = range.filter(|[first, last]| last < first) {
+        return refuse("unfit_value", from_last("RANGE", first, last));
     }
     Ok(Command::Activate {
         on,

@@ -290,7 +290,7 @@ impl<'a> Reader<'a> {
             Meaning::Unknown => return self.unknown_argument(name),
         };
         let meant = Self::argument_of(record, argument);
-        let kind = meant.kind;
+        let (kind, first) = (meant.kind, self.at);
         let value = match (kind, equals) {
             (Kind::Flag, false) => Value::Flag,
             (Kind::Flag, true) => {
@@ -304,6 +304,9 @@ impl<'a> Reader<'a> {
             (_, true) => self.value(kind, name)?,
         };
         let span = Span::new(start, self.tokens[self.at - 1].span.end);
+        if let Err(message) = meant.admits(&value) {
+            return self.fail("unfit_value", self.between(first, self.at), message);
+        }
         let given = Given {
             argument,
             value,

@@ -3,6 +3,9 @@
 use super::*;
 use crate::diagnostic::Cause;
 
+/// Letters of a keyword before a colon, at least, that make a text look like an argument.
+const LEAST_KEYWORD: usize = 3;
+
 impl Reader<'_> {
     pub(super) fn value(&mut self, kind: Kind, name: Token) -> Result<Value, Reported> {
         if self.at_end_of_value() {
@@ -208,6 +211,9 @@ impl Reader<'_> {
             if ends {
                 break;
             }
+            if t.kind == TokenKind::Comma {
+                self.colon_for_equals(next);
+            }
             self.at += 1;
         }
         Ok(self.joined(from, self.at, ", ").0)
@@ -236,8 +242,32 @@ impl Reader<'_> {
                 self.cut_by_abbreviation(next);
                 return Ok(all);
             }
+            self.colon_for_equals(next);
             self.at = next;
         }
+    }
+
+    /// Doubts a text that begins with a keyword and a colon: an equals sign would make it another
+    /// argument.
+    fn colon_for_equals(&mut self, next: usize) {
+        let is = |k: usize, kind| self.tokens.get(k).is_some_and(|t| t.kind == kind);
+        if !is(next, TokenKind::Atom) || !is(next + 1, TokenKind::Colon) {
+            return;
+        }
+        let word = self.text(self.tokens[next]);
+        let meant = match self.argument_meant(word) {
+            Meaning::One(k) if word.len() >= LEAST_KEYWORD => self.arguments().nth(k),
+            _ => None,
+        };
+        let Some(keyword) = meant.map(Argument::keyword) else {
+            return;
+        };
+        let what = format!("`{word}:` is taken as text, and not as the argument {keyword}");
+        let d = Diagnostic::warning("ambiguous_argument", what).help(format!(
+            "{keyword}= gives that argument; a text that looks like one stands in quotation marks"
+        ));
+        let d = self.source.locate(self.about(d), self.tokens[next].span);
+        self.out.push(d);
     }
 
     /// Doubts a shortened keyword that ends a list of bare texts: it may be one of them.

@@ -40,6 +40,31 @@ pub struct Argument {
     pub group: Option<&'static str>,
     /// it is accepted and changes nothing, which is said
     pub idle: bool,
+    /// numbers that it may have
+    pub range: Range,
+}
+
+/// Numbers that an argument may have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Range {
+    /// all
+    #[default]
+    All,
+    /// those above zero
+    Positive,
+    /// those from zero on
+    FromZero,
+}
+
+impl Range {
+    /// Says what is wrong with a number that is not among these.
+    fn misses(self, x: f64) -> Option<&'static str> {
+        match self {
+            Range::All => None,
+            Range::Positive => (x.is_nan() || x <= 0.0).then_some("must be positive"),
+            Range::FromZero => (x.is_nan() || x < 0.0).then_some("must not be negative"),
+        }
+    }
 }
 
 impl Argument {
@@ -52,6 +77,23 @@ impl Argument {
             repeated: false,
             group: None,
             idle: false,
+            range: Range::All,
+        }
+    }
+
+    /// Checks that a value is in its range.
+    ///
+    /// # Errors
+    /// A sentence that says what it must be.
+    pub fn admits(&self, value: &Value) -> Result<(), String> {
+        let number = match value {
+            Value::Real(x) => x.value(),
+            Value::Id(n) => f64::from(*n),
+            _ => return Ok(()),
+        };
+        match self.range.misses(number) {
+            None => Ok(()),
+            Some(must) => Err(format!("{} {must}, not {number}", self.keyword())),
         }
     }
 
@@ -93,6 +135,16 @@ impl<T> Binding<T> {
     /// It is accepted and changes nothing, which is said.
     pub const fn idle(mut self) -> Self {
         self.argument.idle = true;
+        self
+    }
+    /// Its number is above zero.
+    pub const fn positive(mut self) -> Self {
+        self.argument.range = Range::Positive;
+        self
+    }
+    /// Its number is zero or more.
+    pub const fn from_zero(mut self) -> Self {
+        self.argument.range = Range::FromZero;
         self
     }
     /// It excludes the other keywords of this group.

@@ -113,6 +113,17 @@ falls for ever; a spring or a stop in that direction gives it a place to rest.
     SPRINGDAMPER/1, TRANSLATIONAL, I=20, J=11, K=10, LENGTH=50     gives it a place to rest",
     },
     Code {
+        name: "not_at_rest",
+        summary: "a model is linearized about a state that moves or is no equilibrium",
+        explanation: "\
+Eigenvalues say what becomes of a push where nothing else happens. Where a part moves or is about to, they are those of the
+equations as they stand at that instant: right for a steady motion of something that is alike all round, such as a rotor, else
+only for times in which little changes. The message names the part, or the state, that is farthest from rest.
+
+    cognate linear model.adm --static      about the equilibrium next to the initial configuration
+    SIMULATE/STATIC                        likewise in a command file, before LINEAR/EIGENSOL",
+    },
+    Code {
         name: "unstable_equilibrium",
         summary: "the equilibrium that was found would be left after the smallest push",
         explanation: "\
@@ -186,6 +197,17 @@ Beyond its first and last X a spline is extrapolated: by a parabola, which grows
 LINEAR_EXTRAPOLATE. Neither was measured. Give data as far as the mechanism goes.
 
     SPLINE/1, X=0,1,2,3, Y=…, LINEAR_EXTRAPOLATE",
+    },
+    Code {
+        name: "large_angles",
+        summary: "the angles of a BUSHING, FIELD or BEAM are too large for its law",
+        explanation: "\
+The three angles between the markers are taken for rotations about the axes of J. That holds where two of the three are small
+(Adams asks for less than 10 degrees); about one axis the markers may turn as far as they like. Beyond, the torque depends on the
+order of the axes and does not come from any stored energy: the results are those of a law that nobody meant. Let a joint
+carry the large turns, or write the torque as a GFORCE of what is meant.
+
+    BUSHING/1, I=21, J=11, KT=10,10,0      about z it may turn: z of both markers along that axis",
     },
     Code {
         name: "below_rounding",

@@ -1,7 +1,7 @@
 //! A [`Drawing`] as the text of an SVG file.
 
 use super::drawing::{Drawing, Mark, Point, shaded};
-use super::labels::{Area, Placed, placed};
+use super::labels::{Area, Placed, placed, written};
 use std::collections::BTreeSet;
 
 /// Width of a margin, in px.
@@ -50,7 +50,8 @@ pub fn svg(drawing: &Drawing, width: f64, unit: &str) -> String {
                     colour,
                 } => {
                     let name = names.next().unwrap_or(Placed::There);
-                    paper.word(*at, word, *colour, name, &mut text);
+                    let word = written(word, width, LETTERS);
+                    paper.word(*at, &word, *colour, name, &mut text);
                 }
                 Mark::Faces { .. } | Mark::Stroke { .. } | Mark::Ball { .. } => {
                     paper.mark(mark, &mut text);
@@ -170,7 +171,7 @@ impl Paper {
     fn names(&self, drawing: &Drawing, size: [f64; 2]) -> Vec<Placed> {
         let marks = drawing.layers.iter().flat_map(|l| &l.marks);
         let words = marks.filter_map(|mark| match mark {
-            Mark::Word { at, text, .. } => Some((self.at(*at), text.as_str())),
+            Mark::Word { at, text, .. } => Some((self.at(*at), written(text, size[0], LETTERS))),
             Mark::Faces { .. } | Mark::Stroke { .. } | Mark::Ball { .. } => None,
         });
         let bar = Area {
@@ -187,6 +188,7 @@ impl Paper {
         let [x, y] = match name {
             Placed::LeftOut => return,
             Placed::There => point,
+            Placed::Moved(middle) => middle.map(short),
             Placed::Beside(middle) => {
                 let middle = middle.map(short);
                 *text += &format!(
