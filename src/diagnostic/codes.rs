@@ -681,8 +681,8 @@ FUNCTION=USER(...) calls a compiled routine that only its author has. There are 
     session.register(\"SFORCE/3\", ...)       a closure of yours computes it, in a program that uses cognate as a library
     DEACTIVATE/SFORCE, ID=3                  in the command file: without the element
 
-A closure is found by the element's name, by the text of its ROUTINE, or by the first number of USER. A REQUEST that nobody computes moves
-nothing: the model is solved, and the columns that are missing are told.",
+A closure is found by the element's name, by the text of its ROUTINE, or by the first number of USER. A REQUEST that nobody
+computes moves nothing: the model is solved, and the columns that are missing are told.",
     },
     Code {
         name: "loop",

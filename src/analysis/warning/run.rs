@@ -279,11 +279,7 @@ impl RunWarning {
                 is_length,
                 unit,
                 ..
-            } => format!(
-                " was left out as redundant, but is off by {} at time {at:.9}: \
-                 more than IC/ERROR permits",
-                amount(*off, *is_length, unit)
-            ),
+            } => beyond_tolerance(*at, &amount(*off, *is_length, unit)),
             RunWarning::LockedWithoutMotions(d) => {
                 format!(": {}; no motion can change that", d.message)
             }
@@ -302,11 +298,7 @@ impl RunWarning {
             RunWarning::EmptyColumn(unsupported) => format!(": {}", unsupported.lack),
             RunWarning::Gap { at, .. } => format!(" has no finite value at time {at}"),
             RunWarning::Rank(change) => of_rank(change),
-            RunWarning::RateAtRest { .. } => {
-                ": what it drives stays where it stands, as no time passes between equilibria; \
-                 a displacement would move it"
-                    .into()
-            }
+            RunWarning::RateAtRest { .. } => RATE_AT_REST.into(),
             RunWarning::Unstable { at, directions } => unstable(*at, *directions),
             RunWarning::PushGrows { at, growth, unit } => push_grows(*at, *growth, unit),
             RunWarning::LargeAngles { since, tilt, .. } => large_angles(*since, *tilt),
@@ -349,6 +341,16 @@ impl RunWarning {
             RunWarning::StabilityLimited { limited, steps } => stiff(*limited, *steps),
         }
     }
+}
+
+const RATE_AT_REST: &str = ": what it drives stays where it stands, as no time passes between \
+                            equilibria; a displacement would move it";
+
+/// Returns what is told of a row that was left out and does not hold.
+fn beyond_tolerance(at: f64, off: &str) -> String {
+    format!(
+        " was left out as redundant, but is off by {off} at time {at:.9}: more than IC/ERROR permits"
+    )
 }
 
 /// Returns what rounding of the accelerations adds up to.
