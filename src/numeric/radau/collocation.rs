@@ -62,7 +62,7 @@ pub(super) const KEEP_JACOBIAN_RATE: f64 = 0.02;
 const DIVERGENT_RATE: f64 = 0.99;
 
 /// Ratio of two successive residuals of an unknown above which J does not explain them.
-pub(super) const UNEXPLAINED: f64 = 0.9;
+pub(super) const UNEXPLAINED: f64 = 0.5;
 /// Ratio of a residual without J to its correction above which J hides it: what a smaller one hides
 /// of an iteration that has converged is no more than the permitted error.
 const HIDING: f64 = 30.0;
