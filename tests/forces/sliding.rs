@@ -300,7 +300,7 @@ fn a_mass_lets_go_of_its_belt_whatever_else_swings() {
         (10.0, 3.0),
         (10.03, 3.0),
         (10.07, 3.0),
-        (5.6, 0.32),
+        (3.0, 0.1),
     ];
     for (width, turning) in swings {
         let forces = format!(
