@@ -525,28 +525,14 @@ impl Scalar for Germ {
     }
     fn sin(self) -> Self {
         self.compose(|k, x| {
-            turning(
-                k,
-                [
-                    Scalar::sin(x),
-                    Scalar::cos(x),
-                    -Scalar::sin(x),
-                    -Scalar::cos(x),
-                ],
-            )
+            let (s, c) = Scalar::sin_cos(x);
+            turning(k, [s, c, -s, -c])
         })
     }
     fn cos(self) -> Self {
         self.compose(|k, x| {
-            turning(
-                k,
-                [
-                    Scalar::cos(x),
-                    -Scalar::sin(x),
-                    -Scalar::cos(x),
-                    Scalar::sin(x),
-                ],
-            )
+            let (s, c) = Scalar::sin_cos(x);
+            turning(k, [c, -s, -c, s])
         })
     }
     fn tan(self) -> Self {
@@ -603,28 +589,14 @@ impl Scalar for Germ {
     }
     fn sinh(self) -> Self {
         self.compose(|k, x| {
-            turning(
-                k,
-                [
-                    Scalar::sinh(x),
-                    Scalar::cosh(x),
-                    Scalar::sinh(x),
-                    Scalar::cosh(x),
-                ],
-            )
+            let (s, c) = (Scalar::sinh(x), Scalar::cosh(x));
+            turning(k, [s, c, s, c])
         })
     }
     fn cosh(self) -> Self {
         self.compose(|k, x| {
-            turning(
-                k,
-                [
-                    Scalar::cosh(x),
-                    Scalar::sinh(x),
-                    Scalar::cosh(x),
-                    Scalar::sinh(x),
-                ],
-            )
+            let (s, c) = (Scalar::sinh(x), Scalar::cosh(x));
+            turning(k, [c, s, c, s])
         })
     }
     fn tanh(self) -> Self {

@@ -1,7 +1,7 @@
 //! Elementary functions of plain numbers and of lanes: how near they are to the correctly rounded ones of `pxfm`, that several
 //! numbers at once have the bits of one, and what becomes of numbers that are not usual.
 
-use cognate::scalar::{Dual, Lanes, Scalar};
+use cognate::scalar::{Dual, Lanes, Scalar, hypot};
 
 /// A function of two numbers; most do not read the second.
 type Function = fn(f64, f64) -> f64;
@@ -385,4 +385,20 @@ fn results_that_are_short_numbers_are_exact() {
     assert_eq!(Scalar::ln(1.0), 0.0);
     assert_eq!(Scalar::acos(1.0), 0.0);
     assert_eq!(Scalar::cosh(0.0), 1.0);
+}
+
+#[test]
+fn a_hypotenuse_of_any_size_is_off_by_two_units_at_most() {
+    let mut random = Random(4);
+    for _ in 0..SAMPLES {
+        let [a, size] = [(); 2].map(|()| random.magnitude(-1000.0, 1000.0));
+        let b = a * random.magnitude(-30.0, 30.0);
+        for (a, b) in [(a, b), (a, size), (a, 0.0), (0.0, b)] {
+            let (got, want) = (hypot(a, b), f64::hypot(a, b));
+            assert!(distance(got, want) <= 2, "{a:e}, {b:e}: {got:e}, {want:e}");
+        }
+    }
+    assert_eq!(hypot(0.0, -0.0), 0.0);
+    assert_eq!(hypot(f64::NEG_INFINITY, 1.0), f64::INFINITY);
+    assert!(hypot(f64::NAN, 0.0).is_nan() && hypot(1.0, f64::NAN).is_nan());
 }
