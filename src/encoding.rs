@@ -76,7 +76,7 @@ impl Encoding {
 }
 
 /// Returns the bytes of a text as UTF-8, without a byte order mark.
-pub(crate) fn as_utf8(mut bytes: Vec<u8>) -> Vec<u8> {
+pub fn as_utf8(mut bytes: Vec<u8>) -> Vec<u8> {
     const MARK: &[u8] = "\u{feff}".as_bytes();
     let encoding = Encoding::of(&bytes);
     if encoding != Encoding::Utf8 {

@@ -194,10 +194,12 @@
 //! | `geometry` | contacts of convex solids, by parry |
 //! | `parquet` | results as Parquet |
 //! | `pages` | runs as pages that move, as `.glb` files and as drawings |
+//! | `plots` | curves over time, as SVG and in the letters of a terminal |
+//! | `png`, `pdf` | drawings and plots as PNG, as PDF |
 //! | `serde` | expressions and models as texts, mistakes and rows of sweeps as data |
 //! | `setup` | load cases, functions and set-ups beside a model (`MODEL.toml`) |
-//! | `cli` | the command line and the prompt |
 //!
+//! `native`, `solver` and `geometry` are there by default. The command line is a crate of its own, `cognate-cli`.
 //! Without `native` there is no unsafe Rust here.
 //!
 //! # Floors
@@ -206,7 +208,6 @@
 //! the table of joints; results stand beside the scene because they know nothing of it:
 //!
 //! ```text
-//! 7  cli                        the command line
 //! 6  build  setup serialization models made by programs; load cases beside them; serde
 //! 5  analysis   report          simulations of a scene; plots of results
 //! 4  dataset  scene  results    files of models; equations; records and files of results
@@ -237,7 +238,7 @@ pub mod diagnostic;
 #[cfg(feature = "solver")]
 mod disk;
 #[cfg(feature = "solver")]
-mod encoding;
+pub mod encoding;
 pub mod scalar;
 
 pub use diagnostic::Error;
@@ -273,11 +274,6 @@ pub mod build;
 mod serialization;
 #[cfg(feature = "setup")]
 pub mod setup;
-// floor 7
-#[cfg(feature = "cli")]
-#[allow(clippy::disallowed_methods, reason = "what is shown has few digits")]
-pub mod cli;
-
 #[cfg(feature = "solver")]
 pub use analysis::session::{Analysis, Options, Session};
 #[cfg(feature = "solver")]

@@ -10,12 +10,15 @@ mod mujoco;
 
 use installed::Installed;
 use mujoco::Peer;
+use repository::root;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 #[path = "../../tests/common/installed.rs"]
 mod installed;
+#[path = "../../tests/common/repository.rs"]
+mod repository;
 
 /// A family of models: its name, its first size, the dataset of a size, and the same in MuJoCo's language where it can say it.
 type Family = (
@@ -116,7 +119,7 @@ fn main() {
 
 /// Prints the medians of the start of the program and of small models, taken in turns.
 fn small(program: &Installed, folder: &Path) {
-    let references = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/references");
+    let references = root("tests/data/references");
     let out = folder.join("small");
     let mut times = vec![Vec::new(); SMALL.len() + 1];
     for _ in 0..SMALL_RUNS {

@@ -38,7 +38,7 @@ impl Model {
     ///
     /// # Errors
     /// The errors among what [`Model::check`] finds.
-    pub(crate) fn checked(&self) -> Result<(), Error> {
+    pub fn checked(&self) -> Result<(), Error> {
         let mut wrong = not_finite(self);
         if wrong.is_empty() {
             wrong = self.errors();

@@ -291,6 +291,13 @@ impl Names {
         &self.entries[k as usize]
     }
 
+    /// Returns the name that a [`Node::Named`](super::ast::Node::Named) of a tree calls by its number;
+    /// none for a number of another tree.
+    pub fn name(&self, entry: u32) -> Option<&str> {
+        let entry = self.entries.get(entry as usize);
+        entry.map(|entry| entry.name.as_str())
+    }
+
     /// Refuses a tree that is too large with all formulas that it calls written out.
     pub(crate) fn check_size(&self, ast: &Ast) -> Result<(), Diagnostic> {
         match self.written_out(ast) {

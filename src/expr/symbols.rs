@@ -23,7 +23,6 @@ pub enum Profile {
 
 /// The meaning of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Symbol {
     /// a named number, never followed by parentheses
     Constant(Constant),

@@ -1,20 +1,19 @@
 //! Pictures of results: curves as SVG and as text for the terminal, and mechanisms that move.
 
-#[cfg(feature = "cli")]
+#[cfg(feature = "plots")]
 pub mod channels;
 pub mod mechanism;
-#[cfg(feature = "cli")]
 pub mod picture;
-#[cfg(feature = "cli")]
+#[cfg(feature = "plots")]
 pub mod plot;
-#[cfg(feature = "cli")]
+#[cfg(feature = "plots")]
 pub mod svg;
-#[cfg(feature = "cli")]
+#[cfg(feature = "plots")]
 pub mod terminal;
-#[cfg(feature = "cli")]
+#[cfg(feature = "plots")]
 pub mod transform;
 
-#[cfg(feature = "cli")]
+#[cfg(feature = "plots")]
 pub use plot::{Curve, Plot};
 
 /// Returns a text of no more letters than `most`: of a longer one the beginning and the end.

@@ -1,5 +1,6 @@
 //! The binary as tests run it: arguments and input in, exit code and texts out.
 
+use crate::repository::root;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -14,6 +15,7 @@ pub struct Done {
 pub fn cognate_with(args: &[&str], input: &str) -> Done {
     let mut child = Command::new(env!("CARGO_BIN_EXE_cognate"))
         .args(args)
+        .current_dir(root(""))
         .env_remove("COLUMNS")
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -62,6 +64,7 @@ pub fn session(lines: &str, name: &str) -> (String, i32) {
     let both = std::fs::File::create(&file).unwrap();
     let mut child = Command::new(env!("CARGO_BIN_EXE_cognate"))
         .arg("repl")
+        .current_dir(root(""))
         .env_remove("COLUMNS")
         .stdin(Stdio::piped())
         .stdout(both.try_clone().unwrap())

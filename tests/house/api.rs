@@ -276,9 +276,7 @@ fn defined(modules: &BTreeMap<Path, Module>, at: &Path, name: &str) -> Option<(P
 
 /// The list: modules, and below each what a caller can name there.
 fn listing() -> String {
-    let sources: Vec<File> = (files("src").into_iter())
-        .filter(|f| !f.path.starts_with("src/cli/") && f.path != "src/main.rs")
-        .collect();
+    let sources = files("src");
     let paths: BTreeSet<Path> = sources.iter().map(|f| f.module.clone()).collect();
     let mut modules: BTreeMap<Path, Module> = BTreeMap::new();
     let mut public: BTreeSet<Path> = BTreeSet::from([Vec::new()]);

@@ -1,8 +1,8 @@
 //! `cognate explain CODE` knows every code that a diagnostic of the program can carry.
 
+use super::source::sources;
 use cognate::diagnostic::codes::all;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 
 /// Functions and methods whose first text is a code.
 const GIVERS: [&str; 10] = [
@@ -61,31 +61,15 @@ fn word(rest: &str) -> Option<String> {
     looks_so.then(|| word.to_owned())
 }
 
-fn sources(folder: &Path, all: &mut Vec<std::path::PathBuf>) {
-    for entry in std::fs::read_dir(folder).unwrap().flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            sources(&path, all);
-        } else if path.extension().is_some_and(|e| e == "rs") {
-            all.push(path);
-        }
-    }
-}
-
 #[test]
 fn every_code_in_the_sources_is_explained() {
-    let mut files = Vec::new();
-    sources(
-        &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
-        &mut files,
-    );
     let explained: BTreeSet<&str> = all().map(|c| c.name).collect();
     let mut missing: BTreeMap<String, String> = BTreeMap::new();
     let mut named = BTreeSet::new();
-    for file in files {
-        for code in codes_in(&std::fs::read_to_string(&file).unwrap()) {
+    for file in sources() {
+        for code in codes_in(&file.lines.join("\n")) {
             if !explained.contains(code.as_str()) {
-                missing.insert(code.clone(), file.display().to_string());
+                missing.insert(code.clone(), file.path.clone());
             }
             named.insert(code);
         }
@@ -125,16 +109,13 @@ fn codes_are_explained_once_with_reason_and_example() {
 /// What decides something is a value of a type (`Cause`, `FaultKind`), not a text that is compared.
 #[test]
 fn no_code_is_compared_as_text() {
-    let mut files = Vec::new();
-    sources(
-        &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
-        &mut files,
-    );
     let mut compared = Vec::new();
-    // instructions have codes, too
-    files.retain(|file| !file.components().any(|c| c.as_os_str() == "program"));
-    for file in files {
-        let source = std::fs::read_to_string(&file).unwrap();
+    for file in sources() {
+        // instructions have codes, too
+        if file.module.iter().any(|name| name == "program") {
+            continue;
+        }
+        let source = file.lines.join("\n");
         let source = source
             .split("#[cfg(test)]\nmod tests")
             .next()
@@ -143,7 +124,7 @@ fn no_code_is_compared_as_text() {
             let compares = [".code == \"", ".code != \"", ".contains(&d.code)"];
             let matches = line.contains("match ") && line.trim_end().ends_with(".code {");
             if matches || compares.iter().any(|c| line.contains(c)) {
-                compared.push(format!("{}: {}", file.display(), line.trim()));
+                compared.push(format!("{}: {}", file.path, line.trim()));
             }
         }
     }

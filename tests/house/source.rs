@@ -31,6 +31,13 @@ impl File {
     }
 }
 
+/// All sources: the library's and the command line's.
+pub fn sources() -> Vec<File> {
+    let mut all = files("src");
+    all.extend(files("cli/src"));
+    all
+}
+
 /// All Rust files below a folder of the repository.
 pub fn files(folder: &str) -> Vec<File> {
     let root = root();

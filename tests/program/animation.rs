@@ -2,13 +2,10 @@
 //! there; without them the tests say that they were skipped.
 
 use super::command::{cognate, path, scratch};
+use crate::repository::root;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-
-fn root(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(file)
-}
 
 /// Runs a script of the viewer; `None`: what it needs is not here.
 fn script(name: &str, arguments: &[&str]) -> Option<Value> {

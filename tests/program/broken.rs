@@ -3,6 +3,7 @@
 //! `check`, then `verify`, then `run` are asked as a user would ask them, until one of them speaks.
 //! `cargo test --test program broken:: -- --nocapture` prints the score, a line a fault.
 
+use crate::repository::root;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -548,9 +549,7 @@ fn nothing_is_wrong_with_the_sound_models() {
     for name in SOUND {
         let folder = folder(name);
         let model = format!("{name}.adm");
-        let from = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("tests/data/broken")
-            .join(&model);
+        let from = root("tests/data/broken").join(&model);
         std::fs::copy(from, folder.join(&model)).expect("a copy");
         let (code, text) = command(&folder, &["check", &model]);
         assert_eq!((code, text.contains("warning")), (0, false), "{text}");
@@ -562,8 +561,7 @@ fn named_first(name: &str, commands: &[&[&str]]) -> usize {
     let folder = folder(name);
     let mut named = 0;
     for (k, (model, from, to, elements)) in FAULTS.iter().enumerate() {
-        let sound =
-            Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/data/broken/{model}.adm"));
+        let sound = root(&format!("tests/data/broken/{model}.adm"));
         let text = std::fs::read_to_string(sound).expect("a model");
         assert!(text.contains(from), "{model} has no {from:?}");
         let file = format!("fault_{k}.adm");

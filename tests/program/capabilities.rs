@@ -2,15 +2,12 @@
 //! `tests/data/capabilities.tsv`, whose tests must exist here and whose commands the program must have.
 
 use super::command::cognate;
+use crate::repository::root;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Rows of the founding document.
 const ROWS: usize = 141;
-
-fn root(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
-}
 
 struct Row {
     number: String,

@@ -2,6 +2,7 @@
 //! doors to Python and C compare theirs with the same command line, over the same list of scenes.
 
 use super::command::{cognate, path, scratch};
+use crate::repository::root;
 use cognate::analysis::session::script::obey;
 use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::{Script, Simulate, SimulationKind};
@@ -12,7 +13,7 @@ use std::path::Path;
 
 #[test]
 fn the_library_and_the_command_line_write_the_same_bytes() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = root("");
     let scenes = std::fs::read_to_string(root.join("tests/data/doors.txt")).unwrap();
     assert_eq!(scenes.lines().count(), 10);
     let folder = scratch("doors", "folder", "");
@@ -35,7 +36,7 @@ fn the_library_and_the_command_line_write_the_same_bytes() {
 
 #[test]
 fn the_library_obeys_the_set_up_beside_a_model_as_the_command_line_does() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/loaded");
+    let root = root("tests/data/loaded");
     let folder = scratch("doors_loaded", "folder", "");
     let out = folder.parent().unwrap();
     let dataset = root.join("loaded.adm");

@@ -2,11 +2,12 @@
 //! answer and every picture is compared. With BLESS=1 the answers and pictures are written, to be read.
 
 use super::command::scratch;
+use crate::repository::root;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 fn docs() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")
+    root("docs")
 }
 
 /// Words of a line as a shell takes them apart: blanks part them but between quotes.

@@ -6,11 +6,8 @@
 //! ```
 
 use super::command::{cognate, path, scratch};
+use crate::repository::root;
 use std::path::{Path, PathBuf};
-
-fn root(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(file)
-}
 
 /// Names and texts of the datasets.
 fn datasets() -> Vec<(String, String)> {

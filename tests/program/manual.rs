@@ -1,14 +1,13 @@
 //! The manual in the program and its pages: every model of it runs, every page is the program's own.
 
 use super::command::{cognate, path, scratch};
+use crate::repository::root;
 use cognate::dataset::manual::{self, Effect};
 use cognate::dataset::read_text;
 use std::path::{Path, PathBuf};
 
 fn page(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("docs")
-        .join(name)
+    root("docs").join(name)
 }
 
 /// Compares a page with its text; with BLESS=1 writes it.
@@ -183,7 +182,7 @@ fn anchor(heading: &str) -> String {
 
 #[test]
 fn links_of_the_pages_lead_somewhere() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = root("");
     let folder = std::fs::read_dir(root.join("docs")).unwrap().flatten();
     let mut pages: Vec<PathBuf> = folder
         .map(|e| e.path())

@@ -1,6 +1,7 @@
 //! The commands of pages of the manual run as they stand, one after another.
 #![cfg(unix)]
 
+use crate::repository::root;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -13,7 +14,7 @@ fn commands(page: &str) -> String {
 
 /// Runs the commands of a page in a folder of its own, with the slider-crank; each must succeed.
 fn runs_as_it_stands(name: &str) {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = root("");
     let page = std::fs::read_to_string(root.join("docs").join(name)).unwrap();
     let text = commands(&page);
     assert!(text.lines().count() > 5, "{text}");

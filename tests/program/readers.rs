@@ -3,6 +3,7 @@
 //! `COGNATE_PYTHON` names a Python that has their packages; without it `python3` is asked.
 
 use super::command::{cognate, path, scratch};
+use crate::repository::root;
 use std::path::Path;
 use std::process::Command;
 
@@ -27,7 +28,7 @@ fn adamspy_reads_results_and_log() {
     }
     let script = scratch("adamspy", "read.py", ADAMSPY);
     let out = script.with_file_name("out");
-    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/slider_crank.acf");
+    let model = root("examples/slider_crank.acf");
     let run = [
         "run",
         path(&model),

@@ -2,6 +2,7 @@
 //!
 //! Real files are found in the folder that COGNATE_CORPUS names; without it these tests say that they were skipped.
 
+use crate::repository::root;
 use crate::result_laws as laws;
 
 use cognate::results::{self, Kind, Run, csv, res};
@@ -218,11 +219,10 @@ fn real_logs_and_ours_have_the_same_lines() {
 
 /// Every file of a folder of this repository.
 fn files_in(folder: &str) -> Vec<Vec<u8>> {
-    let mut files: Vec<PathBuf> =
-        std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder))
-            .unwrap()
-            .map(|f| f.unwrap().path())
-            .collect();
+    let mut files: Vec<PathBuf> = std::fs::read_dir(root(folder))
+        .unwrap()
+        .map(|f| f.unwrap().path())
+        .collect();
     files.sort();
     files
         .into_iter()

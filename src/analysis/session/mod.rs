@@ -297,16 +297,15 @@ impl Session {
         });
     }
 
-    /// Says that the model is as it was read without errors: it need not be checked again.
-    #[cfg(feature = "cli")]
-    pub(crate) fn was_read(&mut self) {
+    /// Says that the model was read without errors and is as it was read: the first simulation begins
+    /// without checking it again. What a model with mistakes gives then is not said.
+    pub fn was_read(&mut self) {
         self.is_checked = true;
     }
 
     /// Says that nothing is asked of this session after the commands that it will obey: the last
     /// simulation keeps nothing to go on with.
-    #[cfg(any(feature = "cli", test))]
-    pub(crate) fn end_with_commands(&mut self) {
+    pub fn end_with_commands(&mut self) {
         self.ends_with_commands = true;
     }
 

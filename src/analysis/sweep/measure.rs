@@ -51,8 +51,7 @@ pub struct Measure {
 }
 
 /// Returns whether a column of a table has the name of a measure: `max(…)`.
-#[cfg(feature = "cli")]
-pub(crate) fn is_measure(name: &str) -> bool {
+pub fn is_measure(name: &str) -> bool {
     let word = name.strip_suffix(')').and_then(|t| t.split_once('('));
     let is_word = |word: &str| REDUCTIONS.iter().any(|(w, _)| w.eq_ignore_ascii_case(word));
     word.is_some_and(|(word, _)| is_word(word.trim()))

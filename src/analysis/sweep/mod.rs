@@ -17,9 +17,7 @@ mod measure;
 mod parameter;
 mod table;
 
-pub use measure::Measure;
-#[cfg(feature = "cli")]
-pub(crate) use measure::is_measure;
+pub use measure::{Measure, is_measure};
 pub use parameter::Parameter;
 pub use table::Table;
 

@@ -1,0 +1,88 @@
+//! `cognate fmt`: a dataset in the style of Adams View, comments and order kept.
+
+use super::{Exit, Failure, Outcome, remark, say};
+use cognate::dataset::{self, Reading};
+use cognate::diagnostic::{Cause, Diagnostic, Severity};
+use std::path::PathBuf;
+
+/// Write a dataset in the style of Adams View
+///
+/// One argument per line, at most 80 columns, full keywords, shortest numbers. Comments, names and
+/// order stay. What the dataset means stays too: the formatted text is read again and compared
+/// before it is written.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  cognate fmt model.adm                  prints the formatted dataset
+  cognate fmt model.adm -o tidy.adm
+  cognate fmt model.adm --check          exit code 8 where the file is not formatted")]
+pub struct Args {
+    /// Dataset (.adm)
+    file: PathBuf,
+    /// Write nothing; exit with code 8 when the file is not formatted
+    #[arg(long)]
+    check: bool,
+    /// File to write; without it the text goes to standard output
+    #[arg(short, long, value_name = "OUT", conflicts_with = "check")]
+    output: Option<PathBuf>,
+}
+
+/// Formats a dataset.
+///
+/// # Errors
+/// When it cannot be read, has a statement that was not understood, or cannot be written.
+pub fn run(args: &Args) -> Outcome {
+    let reading = dataset::read(&args.file).map_err(super::check::failure)?;
+    refuse_mistakes(&reading)?;
+    let text = reading.dataset.formatted();
+    let again = dataset::read_text(&text);
+    if again.model.to_text() != reading.model.to_text() {
+        return Err(Failure {
+            exit: Exit::Bug,
+            ..Failure::from(Diagnostic::error(
+                "bug",
+                "the formatted dataset does not mean the same; nothing was written",
+            ))
+        });
+    }
+    if args.check {
+        let same = text == reading.dataset.to_text();
+        if !same {
+            remark(format!("{} is not formatted", args.file.display()));
+        }
+        return Ok(if same { Exit::Done } else { Exit::CheckFailed });
+    }
+    let Some(output) = &args.output else {
+        say(&text);
+        return Ok(Exit::Done);
+    };
+    if super::convert::same_file(&args.file, output) {
+        return Err(Failure::usage(
+            "the output is the input, which is never overwritten",
+        ));
+    }
+    std::fs::write(output, reading.dataset.source.encode(&text)).map_err(|e| {
+        Diagnostic::error(Cause::FileUnwritable, format!("{}: {e}", output.display()))
+    })?;
+    Ok(Exit::Done)
+}
+
+/// Refuses a dataset with a statement that was not understood, since that cannot be written; other
+/// mistakes do not matter.
+fn refuse_mistakes(reading: &Reading) -> Result<(), Failure> {
+    let spans = reading.dataset.mistaken();
+    if spans.is_empty() {
+        return Ok(());
+    }
+    let inside = |d: &Diagnostic| {
+        d.span
+            .is_some_and(|s| spans.iter().any(|i| i.start <= s.start && s.start <= i.end))
+    };
+    let mut diagnostics = reading.diagnostics.clone();
+    diagnostics.retain(|d| d.severity == Severity::Error && inside(d));
+    Err(Failure {
+        exit: Exit::Input,
+        diagnostics,
+        sources: super::check::sources(reading),
+    })
+}

@@ -1,0 +1,679 @@
+//! `cognate run`: a model with its commands, from file to results.
+
+use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, whole_from_one};
+use super::doubted;
+use super::limit::{Guard, simulations_to_the_end};
+use super::progress::Progress;
+use super::render::Sources;
+use super::setup::{self, Asked, Prepared, Setup};
+use super::{Exit, Failure, Outcome, interrupt, output, remark, say, summary};
+use cognate::analysis::session::script::obey;
+use cognate::analysis::session::state::{self, Saved};
+use cognate::analysis::session::{Chosen, Options, Session};
+use cognate::analysis::watch::Watch;
+use cognate::analysis::work_limit::ProcessClock;
+use cognate::dataset::command::{Command, Script, SimulationKind, Step};
+use cognate::dataset::{self, Dataset, Reading};
+use cognate::diagnostic::{Cause, Diagnostic, Error, Severity};
+use cognate::model::{ElementKind, Family, Model, SettingsStatement};
+use cognate::numeric::Stats;
+use cognate::results::format::Format;
+use cognate::results::{self, Event, Loads, Run, Status, json};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Solve a model: a command file (.acf) with its dataset, or a dataset (.adm) alone
+///
+/// MODEL.toml beside the dataset, if there is one, says the rest: which loads act, their functions,
+/// and the set-up of the run (`cognate loads`).
+#[derive(clap::Args, Clone)]
+#[command(after_help = "\
+Examples:
+  cognate run pendulum.acf
+  cognate run Controls_Plant_1.msg plant.adm
+  cognate run pendulum.adm --end 2 --steps 200 --column 'DX(12,21)'
+  cognate run pendulum.acf --animate --open
+  cognate run pendulum.acf --name stiff --out results
+  cognate run crash.adm --loads braking,gravity --end 2
+  cognate run pendulum.acf --error 1e-8 --method DOP853 --out results --json")]
+pub struct Args {
+    /// Command file (.acf), log of an earlier run whose commands are obeyed again (.msg), or
+    /// dataset (.adm)
+    model: PathBuf,
+    /// Dataset that the commands are for, where it is not the one that they name
+    dataset: Option<PathBuf>,
+    #[command(flatten)]
+    integration: IntegrationArgs,
+    /// A further column of the table: any expression (repeatable)
+    #[arg(long = "column", value_name = "EXPR")]
+    columns: Vec<String>,
+    #[command(flatten)]
+    span: SpanArgs,
+    /// Load cases and loads that act, as SFORCE/3 or gravity; `all` for all loads. The choice is
+    /// kept in MODEL.toml for the next runs
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    loads: Vec<String>,
+    /// Folder that results are written to
+    #[arg(short = 'o', long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Name of the run, which its files begin with; without it the model's or OUTPUT_PREFIX
+    #[arg(long, value_name = "NAME", value_parser = run_name)]
+    name: Option<String>,
+    /// Solve N times and report the median time
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole_from_one)]
+    repeat: usize,
+    #[command(flatten)]
+    unsolved: UnsolvedArgs,
+    #[command(flatten)]
+    limits: LimitArgs,
+    /// Threads for mechanisms that nothing couples, which change no result; without it as many as
+    /// there are processors
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    #[command(flatten)]
+    output: output::FileArgs,
+    /// Record only this element, as JOINT/3 or by its name, or this kind, as JOINT (repeatable);
+    /// tables show it
+    #[arg(long, value_name = "ELEMENT", value_delimiter = ',')]
+    only: Vec<Chosen>,
+    /// Record velocities and accelerations of the bodies' centres of mass, eight each; tables show
+    /// them
+    #[arg(long)]
+    body_motion: bool,
+    /// Give every column bars of error (`name±`), from a further run at a smaller request
+    #[arg(long)]
+    accuracy: bool,
+    /// Say nothing but mistakes, and draw no picture of the table
+    #[arg(long)]
+    quiet: bool,
+    /// Print the run record as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Shows progress and listens for Ctrl-C.
+struct Terminal<'a> {
+    progress: &'a std::cell::RefCell<Progress>,
+    tables: output::Tables,
+    guard: &'a Guard,
+    /// simulations that are still to begin, where nothing comes after the last of them
+    left: &'a std::cell::Cell<Option<usize>>,
+}
+
+impl Watch for Terminal<'_> {
+    fn interrupted(&mut self) -> bool {
+        interrupt::requested() || self.tables.have_failed()
+    }
+    fn progress(&mut self, t: f64, _h: f64, stats: &Stats) {
+        interrupt::results_begin();
+        self.guard.moves();
+        self.progress.borrow().at(t, stats.steps);
+    }
+    fn simulated(&mut self, run: &Run) {
+        match self.left.get() {
+            // only writing is left, and nobody needs a copy
+            Some(0) => self.guard.done(),
+            _ => self.guard.keep(run),
+        }
+    }
+}
+
+/// Runs a model with its commands and writes its results.
+///
+/// # Errors
+/// When a file has mistakes or cannot be written, or the model cannot work.
+pub fn run(args: &Args) -> Outcome {
+    run_holding(args, &mut None)
+}
+
+/// Does the same as the last thing of a process: what the run holds is left to the system, which
+/// takes it back at once, and not piece by piece.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_last(args: &Args) -> Outcome {
+    let mut held = None;
+    let outcome = run_holding(args, &mut held);
+    std::mem::forget(held);
+    outcome
+}
+
+/// Runs a model; hands over what the run holds in the end.
+fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
+    let clock = ProcessClock::start();
+    interrupt::install_for_run();
+    let guard = Guard::set(args.limits.limit, clock);
+
+    // read
+    let is_command = has_commands(&args.model);
+    let job = job(args, is_command)?;
+    let args = &args.completed(&job.setup);
+    let [read, about_mechanism] = doubted::remark_on(&job, args.quiet);
+    if !args.quiet {
+        remark_on_loads(&job);
+    }
+    let is_as_read = job.is_as_read();
+    let (Reading { model, dataset, .. }, steps) = (job.reading, job.steps);
+    check_columns(args, &model, &steps)?;
+    let name = args.name.as_ref().unwrap_or(&job.base);
+    let mut session = open(args, (model, is_as_read), name);
+    let seconds = &mut session.run.record.seconds;
+    seconds.begin(clock.elapsed(), job.read_seconds);
+    session.run.record.loads = job.loads;
+    let doubts: Vec<_> = read.iter().chain(&about_mechanism).cloned().collect();
+    note_doubts(&mut session, &doubts);
+    let folder = args.out.as_deref();
+    let tables = output::Tables::open(&args.output, folder, &mut session, clock)?;
+    guard.follow(&session, &tables);
+
+    // solve
+    let outcome = solve(args, &mut session, &steps, (&tables, &guard));
+    let (status, failure) = told(&mut session, outcome);
+    let elapsed = clock.elapsed().as_secs_f64();
+    let cpu = clock.seconds();
+    session.run.log.push(Event::Finished { elapsed, cpu });
+
+    // write and report
+    guard.done();
+    let shown = !args.json && !args.quiet;
+    let is_nothing = failure.is_some() || status == Status::Interrupted;
+    let is_refused = is_nothing && session.run.rows() == 0;
+    let (written, record) = if is_refused {
+        // what an earlier run has written stays
+        (Vec::new(), json::text(&json::record(&session.run)))
+    } else {
+        tables.complete(&mut session, shown)?
+    };
+    if args.output.open {
+        open_pages(&written);
+    }
+    if args.json {
+        say(&record);
+    } else if shown && !is_refused {
+        say(&tables.overview(&session.run));
+        remark(summary::facts(&session.run, &written).trim_end());
+    }
+    if let Some(mut diagnostics) = failure {
+        // a place without a file belongs to the commands
+        let commands = args.model.display().to_string();
+        for d in diagnostics
+            .iter_mut()
+            .filter(|d| is_command && d.file.is_none() && d.line > 0)
+        {
+            d.file = Some(commands.clone());
+        }
+        // what is doubted may be why
+        let said = read.into_iter().chain(diagnostics);
+        let all: Vec<_> = said.chain(session.model.doubts()).collect();
+        return Err(Failure::in_model(&dataset, all));
+    }
+    if status != Status::Completed {
+        super::complain_in_files(&doubts);
+    }
+    if status != Status::Completed && (args.quiet || args.json) {
+        remark(&session.run.record.stop_reason);
+    }
+    *held = Some((session, dataset));
+    Ok(exit(status))
+}
+
+/// Opens the pages among files that were written.
+fn open_pages(written: &[PathBuf]) {
+    let is_page = |file: &&PathBuf| super::moved::has_ending(file, "html");
+    (written.iter().filter(is_page)).for_each(|file| super::animate::open(file));
+}
+
+/// Reads the model of a run and its commands, with the loads that are asked for.
+fn job(args: &Args, is_command: bool) -> Result<Job, Failure> {
+    let asked = match args.loads.is_empty() {
+        true => Asked::Kept,
+        false => Asked::New(&args.loads),
+    };
+    if is_command {
+        args.span.refuse_beside(&args.model)?;
+        return script_with(&args.model, args.dataset.as_deref(), asked);
+    }
+    let single = Single {
+        model: &args.model,
+        dataset: args.dataset.as_deref(),
+        span: args.span,
+    };
+    alone_with(&single, asked)
+}
+
+impl Args {
+    /// Returns these arguments, with those of a set-up where they are not given.
+    fn completed(&self, setup: &Setup) -> Self {
+        let mut all = self.clone();
+        let solve = &setup.solve;
+        let IntegrationArgs { error, method } = &mut all.integration;
+        *error = error.or(solve.error);
+        *method = method.take().or_else(|| solve.method.clone());
+        all.body_motion |= solve.body_motion;
+        if all.columns.is_empty() {
+            all.columns.clone_from(&solve.columns);
+        }
+        if all.only.is_empty() {
+            all.only.clone_from(&solve.only);
+        }
+        if all.output.formats.is_empty() {
+            all.output.formats.clone_from(&solve.formats);
+        }
+        all
+    }
+}
+
+/// Notes what is doubted in the files in the log and the record.
+fn note_doubts(session: &mut Session, doubts: &[Diagnostic]) {
+    (session.run.log).extend(doubts.iter().map(|d| Event::Warning(d.to_string())));
+    session.run.record.doubts = doubts.to_vec();
+}
+
+/// Remarks on the loads that were chosen, or that nothing acts at all.
+fn remark_on_loads(job: &Job) {
+    if let Some(loads) = &job.loads {
+        return remark(setup::loads_acting(loads));
+    }
+    let model = &job.reading.model;
+    let pushes = |kind| {
+        model
+            .numbers(kind)
+            .into_iter()
+            .any(|n| model.is_active(ElementKind::id(kind, n)))
+    };
+    let is_pushed = ElementKind::of(Family::Force).any(pushes);
+    if !job.changes_the_model() && !is_pushed && setup::loads_of(model).is_empty() {
+        remark("no load acts: no motion, no force, no gravity, no initial velocity");
+    }
+}
+
+/// Reads the name of a run: that of a file.
+pub(super) fn run_name(text: &str) -> Result<String, String> {
+    match results::kept::is_run_name(text) {
+        true => Ok(text.to_owned()),
+        false => Err("a run is named as a file is, without a folder: --out DIR".to_owned()),
+    }
+}
+
+/// Notes in the record why a model could not be run; returns the status, and the mistakes.
+fn told(
+    session: &mut Session,
+    outcome: Result<Status, Error>,
+) -> (Status, Option<Vec<Diagnostic>>) {
+    let errors = match outcome {
+        Ok(status) => return (status, None),
+        Err(error) => error.into_diagnostics(),
+    };
+    let record = &mut session.run.record;
+    record.status = Status::Model;
+    record.stop_code = errors.first().map_or("", |d| d.code);
+    record.stop_reason = errors.first().map(ToString::to_string).unwrap_or_default();
+    let events = errors.iter().map(|e| Event::Error(e.to_string()));
+    session.run.log.extend(events);
+    (Status::Model, Some(errors))
+}
+
+/// Checks the columns and elements that the command line asks for, before anything is solved or
+/// written.
+fn check_columns(args: &Args, model: &Model, steps: &[Step]) -> Result<(), Failure> {
+    // commands may make what a column reads
+    let changes = |s: &Step| matches!(s.command, Command::Change(_));
+    let is_final = !steps.iter().any(changes);
+    let mut failure = Failure {
+        exit: Exit::Input,
+        diagnostics: Vec::new(),
+        sources: Sources::default(),
+    };
+    for (k, text) in args.columns.iter().enumerate() {
+        let place = match args.columns.len() {
+            1 => "--column".to_owned(),
+            _ => format!("--column {}", k + 1),
+        };
+        for mut d in model.check_expression(text) {
+            if is_final || !d.is(Cause::UnknownElement) {
+                d.file = Some(place.clone());
+                failure.diagnostics.push(d);
+            }
+        }
+        failure.sources.add(place, text.clone());
+    }
+    let chosen = args.only.iter().filter(|_| is_final);
+    let unknown = chosen.filter_map(|chosen| chosen.in_model(model).err());
+    failure.diagnostics.extend(unknown.map(|mut d| {
+        d.file = Some("--only".into());
+        d
+    }));
+    if failure.diagnostics.is_empty() {
+        Ok(())
+    } else {
+        Err(failure)
+    }
+}
+
+/// Opens the session of a model, with the options of the command line.
+fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session {
+    // formats for everything that was solved
+    let complete = [Format::Res, Format::Parquet];
+    let full = model.settings.contains_key(&SettingsStatement::Results)
+        || complete.iter().any(|f| args.output.formats.contains(f))
+        || args.body_motion
+        || args.output.animate
+        || !args.only.is_empty();
+    let options = Options {
+        repeat: args.repeat,
+        columns: args.columns.clone(),
+        full,
+        frames: args.output.need(&model, Format::Gra),
+        body_rates: args.body_motion,
+        only: args.only.clone(),
+        accuracy: args.accuracy,
+        threads: Some(args.threads.unwrap_or(0)),
+        ..Options::default()
+    };
+    let options = args.integration.given_to(options);
+    let options = args.limits.given_to(args.unsolved.given_to(options));
+    let mut session = Session::new(model, base, options);
+    if is_as_read {
+        session.was_read();
+    }
+    session.end_with_commands();
+    session.run.record.model = args.model.display().to_string();
+    let folder = args.model.parent().map(Path::to_path_buf);
+    session.folders = args.out.clone().into_iter().chain(folder).collect();
+    let title = Event::Title(session.run.title.clone());
+    session.run.log.push(title);
+    session
+}
+
+/// Obeys the commands of a run, with a bar of its progress.
+fn solve(
+    args: &Args,
+    session: &mut Session,
+    steps: &[Step],
+    (tables, guard): (&output::Tables, &Guard),
+) -> Result<Status, Error> {
+    let progress = std::cell::RefCell::new(Progress::new(true, 0.0, 1.0));
+    // bars of error come after the rows
+    let left = simulations_to_the_end(steps).filter(|_| !args.accuracy);
+    let left = std::cell::Cell::new(left);
+    let begin = |start: f64, end: f64| {
+        left.set(left.get().map(|n| n.saturating_sub(1)));
+        progress.borrow().done();
+        *progress.borrow_mut() = Progress::new(args.quiet, start, end);
+    };
+    let mut terminal = Terminal {
+        progress: &progress,
+        tables: tables.clone(),
+        guard,
+        left: &left,
+    };
+    let outcome = obey(session, steps, begin, &mut terminal);
+    progress.borrow().done();
+    outcome
+}
+
+/// The model and the commands of a run.
+pub(super) struct Job {
+    /// the model and its dataset
+    pub reading: Reading,
+    /// base of the names of the files
+    pub base: String,
+    /// the commands
+    pub steps: Vec<Step>,
+    /// the file beside the dataset
+    pub setup: Setup,
+    /// the loads that were chosen; `None`: all loads act
+    pub loads: Option<Loads>,
+    /// warnings and notes about the commands
+    pub remarks: Vec<Diagnostic>,
+    /// time that the bytes of the dataset took, in s
+    pub read_seconds: f64,
+}
+
+impl Job {
+    /// Returns whether commands change the model, or what is active in it.
+    pub fn changes_the_model(&self) -> bool {
+        let changes = |s: &Step| matches!(s.command, Command::Change(_) | Command::Activate { .. });
+        self.steps.iter().any(changes)
+    }
+
+    /// Returns whether the model is that of the dataset: a file beside it may change it.
+    fn is_as_read(&self) -> bool {
+        self.setup.text.is_empty() && self.loads.is_none() && !self.reading.failed()
+    }
+}
+
+/// Returns the exit of a status.
+pub(super) fn exit(status: Status) -> Exit {
+    match status {
+        Status::Completed => Exit::Done,
+        Status::Model => Exit::Model,
+        Status::NoEquilibrium => Exit::NoEquilibrium,
+        Status::Stopped => Exit::Stopped,
+        Status::Limit => Exit::Limit,
+        Status::Interrupted => Exit::Interrupted,
+    }
+}
+
+/// A dataset with one simulation that the command line describes.
+pub(super) struct Single<'a> {
+    /// the dataset
+    pub model: &'a Path,
+    /// a second file, which is a mistake
+    pub dataset: Option<&'a Path>,
+    /// its kind, its end and its output steps
+    pub span: SpanArgs,
+}
+
+/// Prepares a dataset with one simulation given by options, else by its set-up, and the loads of
+/// the last choice.
+pub(super) fn alone(args: &Single<'_>) -> Result<Job, Failure> {
+    alone_with(args, Asked::Kept).inspect(remark_on_choice)
+}
+
+/// Remarks on the loads that were chosen before, where a command takes them.
+fn remark_on_choice(job: &Job) {
+    if let Some(loads) = &job.loads {
+        remark(setup::loads_acting(loads));
+    }
+}
+
+/// Prepares a dataset with one simulation given by options, else by its set-up.
+pub(super) fn alone_with(args: &Single<'_>, asked: Asked<'_>) -> Result<Job, Failure> {
+    let job = standing_with(args, asked)?;
+    match job.steps.is_empty() {
+        true => Err(no_end()),
+        false => Ok(job),
+    }
+}
+
+/// Returns the failure of a dataset that nobody says when to end.
+fn no_end() -> Failure {
+    let what = "no end is given: --end TIME says when the simulation of a dataset ends";
+    Failure::usage(format!("{what}, or a set-up (cognate loads setup)"))
+}
+
+/// Prepares a dataset with the simulation given by options or by its set-up, if one is.
+pub(super) fn standing_with(args: &Single<'_>, asked: Asked<'_>) -> Result<Job, Failure> {
+    if args.dataset.is_some() {
+        let what = "a second file is the dataset of a command file (.acf) or of a log (.msg)";
+        return Err(Failure::usage(what));
+    }
+    let (reading, read_seconds, Prepared { setup, loads }) = timed_read(args.model, asked)?;
+    let steps = single_simulation(args, &setup).unwrap_or_default();
+    Ok(Job {
+        reading,
+        base: stem(args.model),
+        steps,
+        setup,
+        loads,
+        remarks: Vec::new(),
+        read_seconds,
+    })
+}
+
+/// Returns the simulation that options describe, as a command.
+pub(super) fn alone_step(args: &Single<'_>) -> Result<Step, Failure> {
+    let steps = single_simulation(args, &Setup::default()).unwrap_or_default();
+    steps.into_iter().next_back().ok_or_else(no_end)
+}
+
+/// Returns the simulation that options describe, else a set-up, after one at rest where it asks for
+/// that.
+fn single_simulation(args: &Single<'_>, setup: &Setup) -> Option<Vec<Step>> {
+    let SpanArgs { end, steps, kind } = args.span;
+    let kind = kind.map(SimulationKind::from);
+    setup.solve.simulations(kind, end, steps)
+}
+
+pub(super) fn stem(path: &Path) -> String {
+    path.file_stem()
+        .map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
+}
+
+/// Reads a dataset, with the loads of the last choice.
+pub(super) fn read(path: &Path) -> Result<Reading, Failure> {
+    read_with(path, Asked::Kept)
+}
+
+/// Reads a dataset, with loads.
+pub(super) fn read_with(path: &Path, asked: Asked<'_>) -> Result<Reading, Failure> {
+    timed_read(path, asked).map(|(reading, ..)| reading)
+}
+
+/// Reads a dataset and the file beside it; also returns the time that the bytes of the dataset
+/// took, in s.
+pub(super) fn timed_read(
+    path: &Path,
+    asked: Asked<'_>,
+) -> Result<(Reading, f64, Prepared), Failure> {
+    let (mut reading, seconds) = read_bare(path)?;
+    let prepared = setup::prepare(path, &mut reading.model, asked)?;
+    Ok((reading, seconds, prepared))
+}
+
+/// Reads a dataset alone, whatever stands beside it; also returns the time that its bytes took, in
+/// s.
+pub(super) fn read_bare(path: &Path) -> Result<(Reading, f64), Failure> {
+    let clock = Instant::now();
+    let source = dataset::open(path).map_err(|e| Failure::in_files(Exit::Input, e.into()))?;
+    let seconds = clock.elapsed().as_secs_f64();
+    let reading = dataset::read_source(source);
+    if reading.failed() {
+        let errors = reading
+            .diagnostics
+            .into_iter()
+            .filter(|d| d.severity == Severity::Error);
+        return Err(Failure::in_files(Exit::Input, errors.collect()));
+    }
+    Ok((reading, seconds))
+}
+
+/// Returns whether a file holds commands: a command file, or the log of a run.
+pub(super) fn has_commands(path: &Path) -> bool {
+    let is = |e: &std::ffi::OsStr| e.eq_ignore_ascii_case("acf") || e.eq_ignore_ascii_case("msg");
+    path.extension().is_some_and(is)
+}
+
+/// Reads a command file and the dataset it names, or the commands that a log echoes and the dataset
+/// beside it; `dataset`: this one instead. The loads are those of the last choice.
+pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure> {
+    script_with(path, dataset, Asked::Kept).inspect(remark_on_choice)
+}
+
+/// Reads a command file and its dataset, with loads.
+///
+/// # Errors
+/// As [`script`].
+pub(super) fn script_with(
+    path: &Path,
+    dataset: Option<&Path>,
+    asked: Asked<'_>,
+) -> Result<Job, Failure> {
+    let failed = |e: Error| Failure::in_files(Exit::Input, e.into());
+    if path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("msg"))
+    {
+        let script = Script::from_message_log(path).map_err(failed)?;
+        let file = (dataset.map(Path::to_path_buf))
+            .or_else(|| script.model_file())
+            .unwrap_or_else(|| path.with_extension("adm"));
+        let (reading, read_seconds, Prepared { setup, loads }) = timed_read(&file, asked)?;
+        return Ok(Job {
+            reading,
+            base: format!("{}_replay", stem(path)),
+            steps: script.steps,
+            setup,
+            loads,
+            remarks: script.diagnostics,
+            read_seconds,
+        });
+    }
+    let script = Script::read(path).map_err(failed)?;
+    let file = dataset.map(Path::to_path_buf);
+    let Some(file) = file.or_else(|| script.model_file()) else {
+        if let Some(Step {
+            command: Command::Reload(Some(name)),
+            ..
+        }) = script.steps.first()
+        {
+            // a state file holds its model
+            let folder = path.parent().unwrap_or(Path::new(""));
+            let file = folder.join(state::file_name(name));
+            let bytes = std::fs::read(&file).map_err(|e| {
+                let what = format!("{}: cannot be opened: {e}", file.display());
+                Diagnostic::error("cannot_open", what)
+            })?;
+            let saved = Saved::read(&bytes).map_err(Error::into_first)?;
+            return Ok(Job {
+                reading: dataset::read_text(&saved.model().to_text()),
+                base: script.output.clone().unwrap_or_else(|| stem(path)),
+                steps: script.steps,
+                setup: Setup::default(),
+                loads: None,
+                remarks: script.diagnostics,
+                read_seconds: 0.0,
+            });
+        }
+        let d = Diagnostic::error("no_model", format!("{} names no dataset", path.display()));
+        return Err(d.help("begin it with FILE/MODEL=name").into());
+    };
+    let base = script.output.clone().unwrap_or_else(|| stem(path));
+    if !file.exists() {
+        return Err(missing(&script, path, &file));
+    }
+    let (reading, read_seconds, Prepared { setup, loads }) = timed_read(&file, asked)?;
+    Ok(Job {
+        reading,
+        base,
+        steps: script.steps,
+        setup,
+        loads,
+        remarks: script.diagnostics,
+        read_seconds,
+    })
+}
+
+/// Creates the failure for a missing dataset of a command file: names the line, and the files that
+/// may be meant.
+fn missing(script: &Script, path: &Path, file: &Path) -> Failure {
+    let name = script.model.as_deref().unwrap_or_default();
+    let mut d = Diagnostic::error(
+        "cannot_open",
+        format!("there is no dataset {}", file.display()),
+    );
+    d.file = Some(path.display().to_string());
+    if !script.answered {
+        return Failure::in_files(Exit::Input, vec![d]);
+    }
+    (d.line, d.column) = (1, 1);
+    let d = match name.split_once('=') {
+        Some((_, model)) => d.help(format!("FILE/MODEL={} is meant?", model.trim())),
+        None => d,
+    };
+    let d = d.help(
+        "a first line that is no command is taken as the name of the dataset; the command is FILE/MODEL=name",
+    );
+    Failure::in_files(Exit::Input, vec![d])
+}
