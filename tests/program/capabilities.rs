@@ -4,7 +4,6 @@
 use super::command::cognate;
 use crate::repository::root;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
 
 /// Rows of the founding document.
 const ROWS: usize = 141;

@@ -9,7 +9,6 @@ use cognate::dataset::command::{Script, Simulate, SimulationKind};
 use cognate::results::{Status, csv};
 use cognate::setup::{Asked, prepare};
 use cognate::{Model, Options, Session};
-use std::path::Path;
 
 #[test]
 fn the_library_and_the_command_line_write_the_same_bytes() {

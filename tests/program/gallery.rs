@@ -7,7 +7,7 @@
 
 use super::command::{cognate, path, scratch};
 use crate::repository::root;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Names and texts of the datasets.
 fn datasets() -> Vec<(String, String)> {

@@ -4,7 +4,7 @@ use super::command::{cognate, path, scratch};
 use crate::repository::root;
 use cognate::dataset::manual::{self, Effect};
 use cognate::dataset::read_text;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 fn page(name: &str) -> PathBuf {
     root("docs").join(name)

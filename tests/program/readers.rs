@@ -4,7 +4,6 @@
 
 use super::command::{cognate, path, scratch};
 use crate::repository::root;
-use std::path::Path;
 use std::process::Command;
 
 /// What adamspy says of a file of results and a log: rows, the last value, whether the run has finished, whether the log has errors.
