@@ -199,8 +199,8 @@
 //! | `serde` | expressions and models as texts, mistakes and rows of sweeps as data |
 //! | `setup` | load cases, functions and set-ups beside a model (`MODEL.toml`) |
 //!
-//! `native`, `solver` and `geometry` are there by default. The command line is a crate of its own, `cognate-cli`.
-//! Without `native` there is no unsafe Rust here.
+//! `native`, `solver` and `geometry` are there by default. The command line is a crate of its own,
+//! `cognate-cli`. Without `native` there is no unsafe Rust here.
 //!
 //! # Floors
 //!

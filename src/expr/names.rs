@@ -291,8 +291,8 @@ impl Names {
         &self.entries[k as usize]
     }
 
-    /// Returns the name that a [`Node::Named`](super::ast::Node::Named) of a tree calls by its number;
-    /// none for a number of another tree.
+    /// Returns the name that a [`Node::Named`](super::ast::Node::Named) of a tree calls by its
+    /// number; none for a number of another tree.
     pub fn name(&self, entry: u32) -> Option<&str> {
         let entry = self.entries.get(entry as usize);
         entry.map(|entry| entry.name.as_str())

@@ -37,8 +37,8 @@ pub fn of_model(model: &Path) -> Result<Setup, Failure> {
     beside(&dataset_of(model)?)
 }
 
-/// Prepares a model for a run, as [`cognate::setup::prepare`] does; a new choice of loads is kept in
-/// the file.
+/// Prepares a model for a run, as [`cognate::setup::prepare`] does; a new choice of loads is kept
+/// in the file.
 ///
 /// # Errors
 /// All mistakes in that file, at their lines and columns, and names that are no loads.

@@ -297,8 +297,8 @@ impl Session {
         });
     }
 
-    /// Says that the model was read without errors and is as it was read: the first simulation begins
-    /// without checking it again. What a model with mistakes gives then is not said.
+    /// Says that the model was read without errors and is as it was read: the first simulation
+    /// begins without checking it again. What a model with mistakes gives then is not said.
     pub fn was_read(&mut self) {
         self.is_checked = true;
     }
