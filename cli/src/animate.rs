@@ -1,14 +1,13 @@
 //! `cognate animate`: a run as a page that moves, or as an animated `.glb` file.
 
 use super::moved::{Dimensions, Moved, Source, has_ending, pictured};
-use super::{Exit, Failure, Outcome, interrupt, remark, run};
+use super::{Exit, Failure, Outcome, interrupt, piped, remark, run};
 use cognate::diagnostic::Diagnostic;
 use cognate::model::Model;
 use cognate::report::mechanism::page::{Shown, page};
 use cognate::report::mechanism::{Bodies, Pictured, Track, glb};
 use cognate::results::{self, Run};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 
 /// Show a run in motion: one page for any browser, or an animated .glb file
 #[derive(clap::Args)]
@@ -23,12 +22,13 @@ Examples:
 pub struct Args {
     #[command(flatten)]
     source: Source,
-    /// File to write: .html, a page that needs nothing else, or .glb (repeatable); without it a
-    /// page of the name of the run, here
-    #[arg(short = 'o', long = "out", value_name = "FILE")]
+    /// File to write: .html, a page that needs nothing else, or .glb (repeatable) [default: a page
+    /// of the name of the run, here]
+    #[arg(short = 'o', long = "out", value_name = "FILE", value_parser = piped::output("html"))]
     out: Vec<PathBuf>,
     /// A further run of the same mechanism, shown pale over the first (.res, .parquet, .json, .gra)
-    #[arg(long, value_name = "RUN")]
+    /// [default: none]
+    #[arg(long, value_name = "RUN", value_parser = piped::results())]
     over: Option<PathBuf>,
     #[command(flatten)]
     dimensions: Dimensions,
@@ -139,26 +139,8 @@ pub fn page_of_run(model: &Model, run: &Run, folders: &[PathBuf]) -> Result<Stri
 
 /// Opens a page in the browser, without waiting for it; says where the page is when there is none.
 pub fn open(file: &Path) {
-    let openers: &[&[&str]] = if cfg!(target_os = "macos") {
-        &[&["open"]]
-    } else if cfg!(windows) {
-        &[&["cmd", "/C", "start", ""]]
-    } else {
-        &[&["xdg-open"], &["sensible-browser"]]
-    };
-    let opened = openers.iter().any(|words| {
-        let mut command = Command::new(words[0]);
-        command.args(&words[1..]).arg(file);
-        let quiet = command
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::null());
-        quiet.spawn().is_ok()
-    });
-    if !opened {
-        remark(format!(
-            "no browser was found; open {} in one",
-            file.display()
-        ));
+    if open::that_detached(file).is_err() {
+        let file = file.display();
+        remark(format!("no browser was found; open {file} in one"));
     }
 }

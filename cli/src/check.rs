@@ -2,7 +2,7 @@
 
 use super::render::Sources;
 use super::setup::{self, Asked};
-use super::{Exit, Failure, Outcome, complain, remark, say};
+use super::{Exit, Failure, Outcome, complain, piped, remark, say};
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::dataset::command::{Command, Script, Simulate};
 use cognate::dataset::{self, Reading};
@@ -24,8 +24,8 @@ Examples:
   cognate check model.adm
   cognate check models/*.adm run.acf --json")]
 pub struct Args {
-    /// Datasets (.adm) and command files (.acf)
-    #[arg(required = true)]
+    /// Datasets (.adm) and command files (.acf); - reads a dataset from standard input
+    #[arg(required = true, value_parser = piped::model())]
     files: Vec<PathBuf>,
     /// Print the findings as JSON on standard output
     #[arg(long)]

@@ -6,7 +6,7 @@ use super::moved::has_ending;
 use super::recorded::{model_file, record_of};
 use super::run::{self, Single};
 use super::setup::Asked;
-use super::{Exit, Failure, Outcome, complain_in_files, interrupt, remark};
+use super::{Exit, Failure, Outcome, complain_in_files, interrupt, piped, remark};
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::dataset;
@@ -32,23 +32,26 @@ Examples:
   cognate configuration drop.adm --at 0.1 --error 1e-9 -o later.adm")]
 pub struct Args {
     /// Command file (.acf), log (.msg), dataset (.adm), or results of a run whose record names its
-    /// model
+    /// model; - reads a dataset from standard input
+    #[arg(value_parser = piped::model())]
     file: PathBuf,
     /// Time of the configuration
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     at: f64,
     /// Dataset to write
-    #[arg(short = 'o', long = "out", value_name = "FILE.adm")]
+    #[arg(short = 'o', long = "out", value_name = "FILE.adm", value_parser = piped::output("adm"))]
     out: PathBuf,
-    /// Write the commands that are left to this file, with ends that count from there
+    /// Write the commands that are left to this file, with ends that count from there [default:
+    /// they are not written]
     #[arg(long, value_name = "FILE.acf")]
     commands: Option<PathBuf>,
-    /// Dataset or command file of the results, where it is not the one that their record names
+    /// Dataset or command file of the results [default: the one that their record names]
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
     #[command(flatten)]
     integration: IntegrationArgs,
-    /// Kind of simulation, for a dataset without command file
+    /// Kind of simulation, for a dataset without command file [default: that of MODEL.toml, else
+    /// transient]
     #[arg(long = "type", value_name = "KIND", value_enum)]
     kind: Option<KindName>,
     #[command(flatten)]

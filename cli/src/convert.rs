@@ -1,7 +1,7 @@
 //! `cognate convert`: results from one format into another.
 
 use super::output::StyleArgs;
-use super::{Exit, Failure, Outcome, remark};
+use super::{Exit, Failure, Outcome, piped, remark};
 use cognate::results::{self, Run};
 use std::path::{Path, PathBuf};
 
@@ -17,14 +17,17 @@ Examples:
   cognate convert run.gra run.csv --column PART_2_XFORM.X --column PART_2_XFORM.Y
   cognate convert run.res run.json --sequence dynamic_001")]
 pub struct Args {
-    /// Results to read
+    /// Results to read; - reads .csv from standard input, gra:- and so on others
+    #[arg(value_parser = piped::results())]
     input: PathBuf,
     /// File to write
+    #[arg(value_parser = piped::output("csv"))]
     output: PathBuf,
-    /// Keep this column (repeatable); time is always kept
+    /// Keep this column (repeatable); time is always kept [default: all]
     #[arg(long = "column", value_name = "NAME")]
     columns: Vec<String>,
-    /// Keep the rows of this sequence, such as static_001 or dynamic_001 (repeatable)
+    /// Keep the rows of this sequence, such as static_001 or dynamic_001 (repeatable) [default:
+    /// all]
     #[arg(long = "sequence", value_name = "NAME")]
     sequences: Vec<String>,
     #[command(flatten)]

@@ -134,7 +134,7 @@ fn each_of(
         d.file = Some(file.display().to_string());
         d
     };
-    let bytes = std::fs::read(file).map_err(|e| {
+    let bytes = cognate::disk::read(file).map_err(|e| {
         in_file(Diagnostic::error(
             "file_unreadable",
             format!("cannot be read: {e}"),

@@ -1,7 +1,7 @@
 //! `cognate draw`: one configuration of a model as a picture.
 
 use super::moved::{Dimensions, Moved, Source, pictured};
-use super::{Exit, Failure, Outcome, interrupt, remark};
+use super::{Exit, Failure, Outcome, interrupt, piped, remark};
 use cognate::analysis::session::Session;
 use cognate::model::ElementId;
 use cognate::report::mechanism::drawing::{Names, SymbolKind, Wanted, drawing};
@@ -27,11 +27,11 @@ Examples:
 pub struct Args {
     #[command(flatten)]
     source: Source,
-    /// Time of the configuration: the nearest output; without it the last one
+    /// Time of the configuration: the nearest output [default: the last]
     #[arg(long, value_name = "TIME")]
     at: Option<f64>,
-    /// File to write: .svg, .png or .pdf; without it NAME_drawing.svg, here
-    #[arg(short = 'o', long = "out", value_name = "FILE")]
+    /// File to write: .svg, .png or .pdf [default: NAME_drawing.svg, here]
+    #[arg(short = 'o', long = "out", value_name = "FILE", value_parser = piped::output("svg"))]
     out: Option<PathBuf>,
     /// Symbols that are drawn
     #[arg(long, value_enum, default_value = "joints")]
@@ -41,7 +41,7 @@ pub struct Args {
     /// Names that are written: of bodies, or of joints (or the markers that are shown), too
     #[arg(long, value_enum, default_value = "bodies")]
     names: NamesArg,
-    /// Element that stands out, by JOINT/3 or its name (repeatable)
+    /// Element that stands out, by JOINT/3 or its name (repeatable) [default: none]
     #[arg(long, value_name = "ELEMENT")]
     highlight: Vec<String>,
     /// Draw N further configurations of the run, pale

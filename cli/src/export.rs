@@ -6,7 +6,7 @@ use super::configuration::commands;
 use super::run::{self, Single};
 use super::setup::{self, Asked, Setup};
 use super::verify::before_simulation;
-use super::{Exit, Failure, Outcome, remark};
+use super::{Exit, Failure, Outcome, piped, remark};
 use cognate::dataset;
 use cognate::dataset::command::{Command, Step};
 use cognate::diagnostic::{Diagnostic, Severity};
@@ -27,16 +27,18 @@ Examples:
   cognate export crane.adm --loads lift,gravity --end 2 --steps 200
   cognate export crane.adm --name lift --overwrite -o exchange")]
 pub struct Args {
-    /// Dataset (.adm), or command file (.acf)
+    /// Dataset (.adm), or command file (.acf); - reads a dataset from standard input
+    #[arg(value_parser = piped::model())]
     model: PathBuf,
-    /// Name of the run: of the two files, and of the results of who runs them
+    /// Name of the run: of the two files, and of the results of who runs them [default: that of the
+    /// model]
     #[arg(long, value_name = "NAME", value_parser = run::run_name)]
     name: Option<String>,
-    /// Folder that the files are written to; without it here
-    #[arg(short = 'o', long, value_name = "DIR")]
+    /// Folder that the files are written to [default: here]
+    #[arg(short = 'o', long, value_name = "DIR", value_parser = piped::refused(piped::SEVERAL))]
     out: Option<PathBuf>,
-    /// Load cases and loads, as SFORCE/3 or gravity; `all` for all loads; without it those of the
-    /// last choice
+    /// Load cases and loads, as SFORCE/3 or gravity; `all` for all loads [default: those of the
+    /// last choice]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     loads: Vec<String>,
     #[command(flatten)]

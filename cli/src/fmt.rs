@@ -1,6 +1,6 @@
 //! `cognate fmt`: a dataset in the style of Adams View, comments and order kept.
 
-use super::{Exit, Failure, Outcome, remark, say};
+use super::{Exit, Failure, Outcome, piped, remark, say};
 use cognate::dataset::{self, Reading};
 use cognate::diagnostic::{Cause, Diagnostic, Severity};
 use std::path::PathBuf;
@@ -17,13 +17,14 @@ Examples:
   cognate fmt model.adm -o tidy.adm
   cognate fmt model.adm --check          exit code 8 where the file is not formatted")]
 pub struct Args {
-    /// Dataset (.adm)
+    /// Dataset (.adm); - reads a dataset from standard input
+    #[arg(value_parser = piped::model())]
     file: PathBuf,
     /// Write nothing; exit with code 8 when the file is not formatted
     #[arg(long)]
     check: bool,
-    /// File to write; without it the text goes to standard output
-    #[arg(short, long, value_name = "OUT", conflicts_with = "check")]
+    /// File to write [default: standard output]
+    #[arg(short, long, value_name = "OUT", conflicts_with = "check", value_parser = piped::output("adm"))]
     output: Option<PathBuf>,
 }
 

@@ -5,7 +5,7 @@ use super::convert::same_file;
 use super::output::StyleArgs;
 use super::recorded::model_of;
 use super::table::Table;
-use super::{Exit, Failure, Outcome, remark, say, width};
+use super::{Exit, Failure, Outcome, piped, remark, say, width};
 use cognate::analysis::interference::{Interference, Pair, interference};
 use cognate::analysis::motion::Recorded;
 use cognate::diagnostic::Diagnostic;
@@ -28,19 +28,23 @@ Examples:
   cognate interference out/run.res --clearance 2            ends with 8 where a pair comes nearer
   cognate interference out/run.res --out distances.csv      all distances over time")]
 pub struct Args {
-    /// Results of the run: .res, .parquet, or .csv and .json with all parts
+    /// Results of the run: .res, .parquet, or .csv and .json with all parts; - reads .csv from
+    /// standard input, gra:- and so on others
+    #[arg(value_parser = piped::results())]
     results: PathBuf,
-    /// Two parts or GRAPHICS to look at, with a comma (repeatable); all pairs when none is given
+    /// Two parts or GRAPHICS to look at, with a comma (repeatable) [default: all pairs]
     #[arg(long = "pair", value_name = "A,B", value_parser = pair)]
     pairs: Vec<[String; 2]>,
     /// Distance that must remain; a pair that comes nearer ends the command with exit code 8
+    /// [default: nothing is demanded]
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     clearance: Option<f64>,
-    /// Dataset or command file, where it is not the one that the record of the run names
+    /// Dataset or command file [default: the one that the record of the run names]
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
-    /// Write all distances over time to a file: .csv, .res, .parquet or .json
-    #[arg(long, short, value_name = "FILE")]
+    /// Write all distances over time to a file: .csv, .res, .parquet or .json [default: they are
+    /// not written]
+    #[arg(long, short, value_name = "FILE", value_parser = piped::output("csv"))]
     out: Option<PathBuf>,
     /// Print the pairs as JSON
     #[arg(long)]
@@ -87,6 +91,7 @@ pub fn run(args: &Args) -> Outcome {
         remark(format!("{} pairs in {}", found.pairs.len(), out.display()));
     }
     match args.json {
+        _ if args.out.as_deref().is_some_and(piped::is_output) => {}
         true => say(&results::json::text(&as_json(&run, &found))),
         false if found.pairs.is_empty() => say("no pair of solids on different parts\n"),
         false => say(&table(&run, &model, &found)),

@@ -6,7 +6,7 @@
 //! earlier simulations have left, and ends the process.
 
 use super::output::Tables;
-use super::{Exit, complain, interrupt, remark, summary};
+use super::{Exit, complain, interrupt, piped, remark, summary};
 use cognate::analysis::session::{Activity, Session};
 use cognate::analysis::work_limit::ProcessClock;
 use cognate::dataset::command::{Command, Step};
@@ -229,6 +229,7 @@ fn end(shared: &mut Shared, ending: Ending) -> ! {
             Exit::Unwritable
         }
     };
+    piped::end();
     std::process::exit(exit.code().into())
 }
 

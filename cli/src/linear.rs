@@ -1,7 +1,7 @@
 //! `cognate linear`: small motions of a model about a state, as eigenvalues and as a linear system.
 
 use super::arguments::UnsolvedArgs;
-use super::{Exit, Failure, Outcome, interrupt, modes, remark, run, say, summary, width};
+use super::{Exit, Failure, Outcome, interrupt, modes, piped, remark, run, say, summary, width};
 use cognate::analysis::linear::Wanted;
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
@@ -19,7 +19,9 @@ Examples:
   cognate linear pendulum.adm --static --no-damping
   cognate linear plant.acf --out results        after the simulations of the command file")]
 pub struct Args {
-    /// Dataset (.adm), or command file (.acf) whose simulations lead to the state
+    /// Dataset (.adm), or command file (.acf) whose simulations lead to the state; - reads a
+    /// dataset from standard input
+    #[arg(value_parser = piped::model())]
     model: PathBuf,
     /// About the equilibrium next to the initial configuration
     #[arg(long = "static")]
@@ -27,14 +29,15 @@ pub struct Args {
     /// Leave out what depends on velocities
     #[arg(long)]
     no_damping: bool,
-    /// PINPUT whose VARIABLEs are the inputs (all when not given)
+    /// PINPUT whose VARIABLEs are the inputs [default: all]
     #[arg(long, value_name = "ID")]
     pinput: Option<u32>,
-    /// POUTPUT whose VARIABLEs are the outputs (all when not given)
+    /// POUTPUT whose VARIABLEs are the outputs [default: all]
     #[arg(long, value_name = "ID")]
     poutput: Option<u32>,
-    /// Folder that NAME_linear.json and NAME_linear.m are written to
-    #[arg(short = 'o', long, value_name = "DIR")]
+    /// Folder that NAME_linear.json and NAME_linear.m are written to [default: they are not
+    /// written]
+    #[arg(short = 'o', long, value_name = "DIR", value_parser = piped::refused(piped::SEVERAL))]
     out: Option<PathBuf>,
     #[command(flatten)]
     unsolved: UnsolvedArgs,

@@ -9,6 +9,7 @@ use clap::ValueEnum;
 use cognate::analysis::session::Chosen;
 use cognate::diagnostic::{Diagnostic, near_names};
 use cognate::model::Model;
+use cognate::results::format::Format;
 use cognate::results::json;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -98,16 +99,17 @@ struct SetupArgs {
     no_equilibrium: bool,
     #[command(flatten)]
     integration: IntegrationArgs,
-    /// Formats of the tables
-    #[arg(long = "format", value_name = "NAME", value_delimiter = ',')]
+    /// Formats of the tables [default: as before]
+    #[arg(long = "format", value_name = "NAME", value_delimiter = ',', value_parser = Format::names(true), ignore_case = true)]
     formats: Vec<String>,
     /// Record only this element, as JOINT/3 or by its name, or this kind, as JOINT (repeatable)
+    /// [default: as before]
     #[arg(long, value_name = "ELEMENT", value_delimiter = ',')]
     only: Vec<String>,
     /// Record velocities and accelerations of the bodies' centres of mass
     #[arg(long)]
     body_motion: bool,
-    /// A further column: any expression (repeatable)
+    /// A further column: any expression (repeatable) [default: as before]
     #[arg(long = "column", value_name = "EXPR")]
     columns: Vec<String>,
     /// Forget the set-up before, but the choice of loads

@@ -12,6 +12,7 @@ mod arguments;
 mod assembly;
 mod card;
 mod check;
+mod completions;
 mod configuration;
 mod convert;
 mod data;
@@ -39,6 +40,7 @@ mod modes;
 mod motion;
 mod moved;
 mod output;
+mod piped;
 mod plot;
 mod progress;
 mod recorded;
@@ -65,8 +67,18 @@ use std::process::ExitCode;
 
 /// The ADAMS function language and the multibody solver that speaks it.
 #[derive(Parser)]
-#[command(name = "cognate", version, disable_help_subcommand = true, arg_required_else_help = true, after_help = EXIT_CODES)]
+#[command(name = "cognate", version, disable_help_subcommand = true, arg_required_else_help = true, after_help = EXIT_CODES, max_term_width = 100)]
 struct Cli {
+    /// Colours in help, messages and pictures: auto has them where a person reads and NO_COLOR is
+    /// not set
+    #[arg(
+        long,
+        global = true,
+        value_name = "WHEN",
+        value_enum,
+        default_value = "auto"
+    )]
+    color: clap::ColorChoice,
     #[command(subcommand)]
     verb: Verb,
 }
@@ -78,6 +90,7 @@ struct Cli {
 enum Verb {
     Animate(animate::Args),
     Check(check::Args),
+    Completions(completions::Args),
     Configuration(configuration::Args),
     Convert(convert::Args),
     Draw(draw::Args),
@@ -92,6 +105,7 @@ enum Verb {
     Interference(interference::Args),
     Linear(linear::Args),
     Loads(loads::Args),
+    Man(completions::ManArgs),
     Mdi(mdi::Args),
     Motion(motion::Args),
     Plot(plot::Args),
@@ -105,8 +119,8 @@ enum Verb {
 }
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 done, 1 our mistake, 2 usage, 3 input (syntax, names), 4 model (freedom, contradiction, inertia),
-5 no equilibrium, 6 integration stopped early, 7 limit (time, memory, steps), 8 a check failed,
+Exit codes: 0 done, 1 our mistake, 2 usage, 3 input (syntax, names), 4 model (freedom, contradiction, inertia), \
+5 no equilibrium, 6 integration stopped early, 7 limit (time, memory, steps), 8 a check failed, \
 9 results could not be written, 130 interrupted.";
 
 /// The outcome of a command.
@@ -225,6 +239,7 @@ const STACK_BYTES: usize = 256 << 20;
 /// Runs the command that the arguments of the process name.
 fn main() -> ExitCode {
     let cli = parsed();
+    render::choose_colours(cli.color);
     if !matches!(cli.verb, Verb::Sweep(_)) {
         memory::serve_one_thread();
     }
@@ -241,9 +256,29 @@ fn main() -> ExitCode {
     ExitCode::from(exit.code())
 }
 
+/// Returns all commands and options.
+fn command() -> clap::Command {
+    Cli::command()
+}
+
+/// Returns the choice of colours among arguments: help and mistakes in them have it, too.
+fn colours(arguments: impl Iterator<Item = std::ffi::OsString>) -> clap::ColorChoice {
+    let mut words = arguments.map(|word| word.to_string_lossy().into_owned());
+    let mut chosen = None;
+    while let Some(word) = words.next().filter(|word| word != "--") {
+        chosen = match word.strip_prefix("--color") {
+            Some("") => words.next(),
+            Some(rest) => rest.strip_prefix('=').map(str::to_owned).or(chosen),
+            None => chosen,
+        };
+    }
+    let choice = chosen.and_then(|word| clap::ValueEnum::from_str(&word, false).ok());
+    choice.unwrap_or_default()
+}
+
 /// Returns the arguments of the process; ends it where they are not understood or ask for help.
 fn parsed() -> Cli {
-    let mut command = Cli::command();
+    let mut command = command().color(colours(std::env::args_os()));
     let first = std::env::args_os().nth(1).unwrap_or_default();
     if !command
         .get_subcommands()
@@ -261,6 +296,7 @@ fn obey(cli: &Cli) -> Exit {
     let verb = std::panic::AssertUnwindSafe(|| match &cli.verb {
         Verb::Animate(args) => animate::run(args),
         Verb::Check(args) => check::run(args),
+        Verb::Completions(args) => completions::run(args),
         Verb::Configuration(args) => configuration::run(args),
         Verb::Convert(args) => convert::run(args),
         Verb::Draw(args) => draw::run(args),
@@ -275,6 +311,7 @@ fn obey(cli: &Cli) -> Exit {
         Verb::Interference(args) => interference::run(args),
         Verb::Linear(args) => linear::run(args),
         Verb::Loads(args) => loads::run(args),
+        Verb::Man(args) => completions::man(args),
         Verb::Mdi(args) => mdi::run(args),
         Verb::Motion(args) => motion::run(args),
         Verb::Plot(args) => plot::run(args),
@@ -286,7 +323,8 @@ fn obey(cli: &Cli) -> Exit {
         Verb::Sweep(args) => sweep::run(args),
         Verb::Verify(args) => verify::run(args),
     });
-    match std::panic::catch_unwind(verb) {
+    let verb = || piped::begin().and_then(|()| verb());
+    let exit = match std::panic::catch_unwind(std::panic::AssertUnwindSafe(verb)) {
         Ok(Ok(exit)) => exit,
         Ok(Err(failure)) => {
             complain(&failure.diagnostics, &failure.sources);
@@ -300,12 +338,15 @@ fn obey(cli: &Cli) -> Exit {
             );
             Exit::Bug
         }
-    }
+    };
+    piped::end();
+    exit
 }
 
 /// Prints diagnostics on standard error.
 pub fn complain(diagnostics: &[Diagnostic], sources: &Sources) {
     let text = render::render(diagnostics, sources, render::colour_on_stderr());
+    let text = piped::named(text);
     // a closed stream is no mistake
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
@@ -317,15 +358,20 @@ pub fn complain_in_files(diagnostics: &[Diagnostic]) {
 
 /// Prints on standard error a remark about what was done.
 pub fn remark(message: impl std::fmt::Display) {
-    let _ = writeln!(std::io::stderr(), "{message}");
+    let _ = writeln!(std::io::stderr(), "{}", piped::named(message.to_string()));
 }
 
 /// Prints results on standard output. When the reader is gone (`| head`), the program ends quietly;
 /// when they cannot be written otherwise (a full disk), it says so and ends with
 /// [`Exit::Unwritable`].
 pub fn say(text: &str) {
+    say_bytes(text.as_bytes());
+}
+
+/// Prints results that need not be text, as [`say`] does.
+pub fn say_bytes(bytes: &[u8]) {
     let mut out = std::io::stdout().lock();
-    let Err(e) = out.write_all(text.as_bytes()).and_then(|()| out.flush()) else {
+    let Err(e) = out.write_all(bytes).and_then(|()| out.flush()) else {
         return;
     };
     if e.kind() == std::io::ErrorKind::BrokenPipe {
@@ -337,4 +383,73 @@ pub fn say(text: &str) {
         &Sources::default(),
     );
     std::process::exit(Exit::Unwritable.code().into());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns a command and those below it, with their names.
+    fn all(command: &clap::Command, found: &mut Vec<(String, clap::Command)>) {
+        let name = command.get_display_name().unwrap_or("cognate").to_owned();
+        found.push((name, command.clone()));
+        (command.get_subcommands()).for_each(|below| all(below, found));
+    }
+
+    #[test]
+    fn every_option_says_its_default_and_lists_its_choices() {
+        let mut whole = command();
+        whole.build();
+        let (mut commands, mut closed) = (Vec::new(), Vec::new());
+        all(&whole, &mut commands);
+        assert!(commands.len() > 30);
+        for (name, command) in commands {
+            let shown = command.clone().render_long_help().to_string();
+            // a choice of two words may be wrapped
+            let shown = shown.split_whitespace().collect::<Vec<_>>().join(" ");
+            for option in command.get_arguments() {
+                let takes = option.get_num_args().is_some_and(|n| n.takes_values());
+                if option.is_positional() || option.is_hide_set() || !takes {
+                    continue;
+                }
+                let help = option.get_help().map(ToString::to_string);
+                let says = help.is_some_and(|help| help.contains("[default: "));
+                let is_said = says || !option.get_default_values().is_empty();
+                let long = option.get_long().unwrap_or_default();
+                assert!(is_said || option.is_required_set(), "{name} --{long}");
+                let choices = option.get_possible_values();
+                for choice in choices.iter().filter(|c| !c.is_hide_set()) {
+                    let choice = choice.get_name();
+                    assert!(shown.contains(choice), "{name} --{long}: {choice}");
+                }
+                if !choices.is_empty() {
+                    closed.push(format!("{name} --{long}"));
+                }
+            }
+        }
+        for option in [
+            "cognate-run --method",
+            "cognate-run --format",
+            "cognate-run --type",
+            "cognate-run --color",
+            "cognate-report --method",
+            "cognate-loads-setup --format",
+            "cognate-group-function --ends",
+            "cognate-group-function --ordinate",
+            "cognate-motion --as",
+        ] {
+            assert!(closed.contains(&option.to_owned()), "{option}: {closed:?}");
+        }
+    }
+
+    #[test]
+    fn the_last_choice_of_colours_before_the_end_of_options_counts() {
+        let chosen = |words: &[&str]| colours(words.iter().map(Into::into));
+        assert_eq!(chosen(&["run", "x.adm"]), clap::ColorChoice::Auto);
+        let both = ["--color=always", "run", "--color", "never"];
+        assert_eq!(chosen(&both), clap::ColorChoice::Never);
+        let behind = ["eval", "--color=never", "--", "--color=always"];
+        assert_eq!(chosen(&behind), clap::ColorChoice::Never);
+        assert_eq!(chosen(&["--color", "blue"]), clap::ColorChoice::Auto);
+    }
 }

@@ -26,7 +26,8 @@ Examples:
   export SDRC_ADAMS_SOLVER=/usr/local/cognate      and the other program starts this one
   cognate mdi -c ru-standard i run.acf exit        what it calls")]
 pub struct Args {
-    /// Write the script `mdi` (and `common/mdi.bat`) that calls this program to a folder
+    /// Write the script `mdi` (and `common/mdi.bat`) that calls this program to a folder [default:
+    /// none, the words are obeyed]
     #[arg(long, value_name = "FOLDER", conflicts_with = "words")]
     install: Option<PathBuf>,
     /// The words of the other program: -c ru-standard i FILE.acf exit

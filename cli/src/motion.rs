@@ -3,7 +3,7 @@
 use super::convert::same_file;
 use super::output::StyleArgs;
 use super::recorded::model_of;
-use super::{Exit, Failure, Outcome, remark, say, summary, width};
+use super::{Exit, Failure, Outcome, piped, remark, say, summary, width};
 use cognate::analysis::motion::{MarkerMeasure, Recorded};
 use cognate::diagnostic::{Cause, Diagnostic};
 use cognate::model::{ElementId, ElementKind, Model};
@@ -24,7 +24,9 @@ Examples:
   cognate motion out/run.parquet --of MARKER/20 --relative-to MARKER/10 --in ground --seen-from ground
   cognate plot out/run.res --y 'VX(20,10,10,10)'          one of them as a column")]
 pub struct Args {
-    /// Results of the run: .res, .parquet, or .csv and .json with all parts
+    /// Results of the run: .res, .parquet, or .csv and .json with all parts; - reads .csv from
+    /// standard input, gra:- and so on others
+    #[arg(value_parser = piped::results())]
     results: PathBuf,
     /// Marker that moves, as MARKER/20, or joint, as JOINT/3 or by its name: its I marker
     /// (repeatable)
@@ -33,20 +35,20 @@ pub struct Args {
     /// Marker that the motion is relative to
     #[arg(long, value_name = "MARKER")]
     relative_to: String,
-    /// Marker along whose axes components are, or ground
+    /// Marker along whose axes components are, or ground [default: that of --relative-to]
     #[arg(long = "in", value_name = "MARKER")]
     axes: Option<String>,
-    /// Marker from which rates are seen, or ground
+    /// Marker from which rates are seen, or ground [default: that of --relative-to]
     #[arg(long, value_name = "MARKER")]
     seen_from: Option<String>,
-    /// Kind of motion (repeatable); all that the results have when none is given
+    /// Kind of motion (repeatable) [default: all that the results have]
     #[arg(long = "as", value_enum, value_name = "KIND")]
     kinds: Vec<KindName>,
-    /// Dataset or command file, where it is not the one that the record of the run names
+    /// Dataset or command file [default: the one that the record of the run names]
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
-    /// Write the motion to a file: .csv, .res, .parquet or .json
-    #[arg(long, short, value_name = "FILE")]
+    /// Write the motion to a file: .csv, .res, .parquet or .json [default: a few rows are shown]
+    #[arg(long, short, value_name = "FILE", value_parser = piped::output("csv"))]
     out: Option<PathBuf>,
     #[command(flatten)]
     style: StyleArgs,

@@ -3,7 +3,7 @@
 use super::arguments::{KindName, SpanArgs, UnsolvedArgs};
 use super::run::{self, Single};
 use super::setup::Asked;
-use super::{Failure, complain_in_files, interrupt, recorded, remark};
+use super::{Failure, complain_in_files, interrupt, piped, recorded, remark};
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::dataset::surface::Surfaces;
@@ -17,9 +17,11 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 pub struct Source {
     /// Command file (.acf), dataset (.adm), or results (.res, .parquet, .json, .gra) of a run with
-    /// all its parts
+    /// all its parts; - reads a dataset from standard input
+    #[arg(value_parser = piped::model())]
     pub file: PathBuf,
-    /// Dataset of the results; without it the one of their name beside them
+    /// Dataset of the results [default: the one of their name beside them, else that of their
+    /// record]
     #[arg(long, value_name = "FILE")]
     pub model: Option<PathBuf>,
     #[command(flatten)]
@@ -32,7 +34,7 @@ pub struct Source {
 #[derive(clap::Args)]
 pub struct Dimensions {
     /// Show the distance of two markers as a dimension, as 20,10; its value changes with the
-    /// mechanism (repeatable)
+    /// mechanism (repeatable) [default: none]
     #[arg(long = "dimension", value_name = "I,J")]
     pairs: Vec<Pair>,
 }

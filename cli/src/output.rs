@@ -1,6 +1,7 @@
 //! The files of a run: tables that grow while it goes on, and what is written when it is over.
 
 use super::{Failure, animate, linear, remark, summary};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use cognate::analysis::motion::marker_digest;
 use cognate::analysis::session::Session;
 use cognate::analysis::work_limit::ProcessClock;
@@ -24,10 +25,9 @@ pub const MOST_IN_RES: usize = 10_000_000;
 /// The wishes of a user about files.
 #[derive(clap::Args, Clone)]
 pub struct FileArgs {
-    /// Formats of the tables: csv, parquet, res, json, req, gra. Without this option it is csv, and
-    /// those that the dataset asks for if they have no more than 10 million numbers: res by
-    /// RESULTS, req by OUTPUT/REQSAVE, gra by OUTPUT/GRSAVE
-    #[arg(long = "format", value_name = "NAME", value_delimiter = ',', value_parser = table_format)]
+    /// Formats of the tables [default: csv, and those that the dataset asks for if they have no
+    /// more than 10 million numbers: res by RESULTS, req by OUTPUT/REQSAVE, gra by OUTPUT/GRSAVE]
+    #[arg(long = "format", value_name = "NAME", value_delimiter = ',', value_parser = table_formats(), ignore_case = true)]
     pub formats: Vec<Format>,
     /// Write a page that shows the run in motion, too (NAME.html)
     #[arg(long)]
@@ -88,14 +88,12 @@ impl FileArgs {
     }
 }
 
-/// Returns the format of a name.
-///
-/// # Errors
-/// The formats that there are.
-fn table_format(name: &str) -> Result<Format, String> {
-    let row = Format::row(&name.to_lowercase()).filter(|row| row.sink.is_some());
-    row.map(|row| row.format)
-        .ok_or_else(|| format!("formats: {}", Format::names(true).join(", ")))
+/// Reads the format of a table by its name.
+pub fn table_formats() -> impl TypedValueParser<Value = Format> {
+    PossibleValuesParser::new(Format::names(true)).try_map(|name| {
+        let row = Format::row(&name.to_lowercase());
+        row.map(|row| row.format).ok_or("there is no such format")
+    })
 }
 
 /// A table of a run that is being written.
@@ -238,7 +236,7 @@ impl Tables {
 }
 
 /// Returns the name of a table: that of the record is not free.
-fn table_name(base: &str, format: &str) -> String {
+pub fn table_name(base: &str, format: &str) -> String {
     match format {
         "json" => format!("{base}.table.json"),
         other => format!("{base}.{other}"),

@@ -7,7 +7,7 @@ use super::recorded::add_measures;
 use super::response::responses;
 use super::setup::{self, Setup};
 use super::table::Table;
-use super::{Exit, Failure, Outcome, remark, render, run, say, width};
+use super::{Exit, Failure, Outcome, piped, remark, render, run, say, width};
 use cognate::diagnostic::Diagnostic;
 use cognate::report::channels::{Channels, Shown, Source, channels};
 use cognate::report::terminal::{Style, terminal};
@@ -33,39 +33,40 @@ Examples:
   cognate plot run.csv --statistics")]
 pub struct Args {
     /// Results to read: .csv, .parquet, .json, .res, .req, .gra or .msg; or a model (.adm, .acf),
-    /// whose functions are shown
+    /// whose functions are shown; - reads .csv from standard input, gra:- and so on others
+    #[arg(value_parser = piped::results())]
     input: PathBuf,
     /// Column to show (repeatable), or a displacement, velocity or acceleration of markers, as
-    /// VX(20,10), or a function of the model; the first few when none is given
+    /// VX(20,10), or a function of the model [default: the first few]
     #[arg(long, value_name = "COLUMN")]
     y: Vec<String>,
     /// Group whose functions are shown (repeatable): of the model, the run by its name, or a set of
-    /// results
+    /// results [default: none]
     #[arg(long = "group", value_name = "GROUP")]
     groups: Vec<String>,
-    /// Last time for functions of a model
+    /// Last time for functions of a model [default: that of MODEL.toml, needed without it]
     #[arg(long, value_name = "TIME")]
     end: Option<f64>,
-    /// Column to show them over; time when not given, of a sweep its first parameter
+    /// Column to show them over [default: time, of a sweep its first parameter]
     #[arg(long, value_name = "COLUMN")]
     x: Option<String>,
-    /// Results of another run, shown over the first (repeatable)
-    #[arg(long, value_name = "FILE")]
+    /// Results of another run, shown over the first (repeatable) [default: none]
+    #[arg(long, value_name = "FILE", value_parser = piped::results())]
     over: Vec<PathBuf>,
     /// Show the values, or what is made of them
     #[arg(long = "as", value_enum, default_value = "values", value_name = "WHAT")]
     shown: ShownName,
-    /// Dataset or command file for motions of markers, where the record does not name it
+    /// Dataset or command file for motions of markers [default: the one that the record names]
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
     /// Draw each unit in a panel of its own
     #[arg(long)]
     panels: bool,
-    /// Title above the picture
+    /// Title above the picture [default: none]
     #[arg(long)]
     title: Option<String>,
-    /// Write a file instead of drawing in the terminal: .svg, .png or .pdf
-    #[arg(long, short, value_name = "FILE", alias = "svg", conflicts_with_all = ["statistics", "list"])]
+    /// Write a file instead of drawing in the terminal: .svg, .png or .pdf [default: the terminal]
+    #[arg(long, short, value_name = "FILE", alias = "svg", conflicts_with_all = ["statistics", "list"], value_parser = piped::output("svg"))]
     out: Option<PathBuf>,
     /// Print ends, extremes and means of the columns instead
     #[arg(long)]

@@ -1,8 +1,8 @@
 //! `cognate report`: a model at many requests by all methods, as error against time.
 
-use super::arguments::{SpanArgs, UnsolvedArgs};
+use super::arguments::{SpanArgs, UnsolvedArgs, methods};
 use super::run::{self, Single};
-use super::{Exit, Failure, Outcome, interrupt, limit, remark, say};
+use super::{Exit, Failure, Outcome, interrupt, limit, piped, remark, say};
 use cognate::analysis::session::Options;
 use cognate::analysis::watch::Watch;
 use cognate::analysis::work_precision::{Question, Study, page, survey};
@@ -20,29 +20,32 @@ Examples:
   cognate report crank.acf --want 1e-4 --budget 2min
   cognate report crank.adm --end 2 --method RADAU5 --method BDF --out results")]
 pub struct Args {
-    /// Command file (.acf), log of an earlier run (.msg), or dataset (.adm)
+    /// Command file (.acf), log of an earlier run (.msg), or dataset (.adm); - reads a dataset from
+    /// standard input
+    #[arg(value_parser = piped::model())]
     model: PathBuf,
     /// Dataset that the commands are for, where it is not the one that they name
     dataset: Option<PathBuf>,
-    /// Error for which a method and a request are recommended (repeatable)
+    /// Error for which a method and a request are recommended (repeatable) [default: 1e-2, 1e-4,
+    /// 1e-6, 1e-8]
     #[arg(long, value_name = "E")]
     want: Vec<f64>,
     /// Processor time for all runs together: those that would not fit are left out
     #[arg(long, value_name = "TIME", value_parser = limit::seconds, default_value = "1min")]
     budget: f64,
-    /// A method to try (repeatable); all that fit when none is given
-    #[arg(long = "method", value_name = "NAME")]
+    /// A method to try (repeatable) [default: all that fit]
+    #[arg(long = "method", value_name = "NAME", value_parser = methods(), ignore_case = true)]
     methods: Vec<String>,
-    /// A requested error (repeatable); 1e-2 to 1e-12 when none is given
+    /// A requested error (repeatable) [default: 1e-2 to 1e-12]
     #[arg(long = "error", value_name = "E")]
     requests: Vec<f64>,
-    /// A further channel to compare: any expression (repeatable)
+    /// A further channel to compare: any expression (repeatable) [default: none]
     #[arg(long = "column", value_name = "EXPR")]
     columns: Vec<String>,
     #[command(flatten)]
     span: SpanArgs,
-    /// Folder that the report is written to
-    #[arg(short = 'o', long, value_name = "DIR")]
+    /// Folder that the report is written to [default: here]
+    #[arg(short = 'o', long, value_name = "DIR", value_parser = piped::refused(piped::SEVERAL))]
     out: Option<PathBuf>,
     #[command(flatten)]
     unsolved: UnsolvedArgs,

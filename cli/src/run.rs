@@ -6,7 +6,7 @@ use super::limit::{Guard, simulations_to_the_end};
 use super::progress::Progress;
 use super::render::Sources;
 use super::setup::{self, Asked, Prepared, Setup};
-use super::{Exit, Failure, Outcome, interrupt, output, remark, say, summary};
+use super::{Exit, Failure, Outcome, interrupt, output, piped, remark, say, summary};
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::state::{self, Saved};
 use cognate::analysis::session::{Chosen, Options, Session};
@@ -38,25 +38,27 @@ Examples:
   cognate run pendulum.acf --error 1e-8 --method DOP853 --out results --json")]
 pub struct Args {
     /// Command file (.acf), log of an earlier run whose commands are obeyed again (.msg), or
-    /// dataset (.adm)
+    /// dataset (.adm); - reads a dataset from standard input
+    #[arg(value_parser = piped::model())]
     model: PathBuf,
     /// Dataset that the commands are for, where it is not the one that they name
     dataset: Option<PathBuf>,
     #[command(flatten)]
     integration: IntegrationArgs,
-    /// A further column of the table: any expression (repeatable)
+    /// A further column of the table: any expression (repeatable) [default: none]
     #[arg(long = "column", value_name = "EXPR")]
     columns: Vec<String>,
     #[command(flatten)]
     span: SpanArgs,
     /// Load cases and loads that act, as SFORCE/3 or gravity; `all` for all loads. The choice is
-    /// kept in MODEL.toml for the next runs
+    /// kept in MODEL.toml for the next runs [default: those of the last choice, else all]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     loads: Vec<String>,
-    /// Folder that results are written to
-    #[arg(short = 'o', long, value_name = "DIR")]
+    /// Folder that results are written to, or - for the table alone on standard output, as .csv or
+    /// by json:- and so on [default: here]
+    #[arg(short = 'o', long, value_name = "DIR", value_parser = piped::run_folder())]
     out: Option<PathBuf>,
-    /// Name of the run, which its files begin with; without it the model's or OUTPUT_PREFIX
+    /// Name of the run, which its files begin with [default: OUTPUT_PREFIX, else the model's]
     #[arg(long, value_name = "NAME", value_parser = run_name)]
     name: Option<String>,
     /// Solve N times and report the median time
@@ -66,14 +68,14 @@ pub struct Args {
     unsolved: UnsolvedArgs,
     #[command(flatten)]
     limits: LimitArgs,
-    /// Threads for mechanisms that nothing couples, which change no result; without it as many as
-    /// there are processors
+    /// Threads for mechanisms that nothing couples, which change no result [default: as many as
+    /// there are processors]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
     #[command(flatten)]
     output: output::FileArgs,
     /// Record only this element, as JOINT/3 or by its name, or this kind, as JOINT (repeatable);
-    /// tables show it
+    /// tables show it [default: all]
     #[arg(long, value_name = "ELEMENT", value_delimiter = ',')]
     only: Vec<Chosen>,
     /// Record velocities and accelerations of the bodies' centres of mass, eight each; tables show
@@ -147,7 +149,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     // read
     let is_command = has_commands(&args.model);
     let job = job(args, is_command)?;
-    let args = &args.completed(&job.setup);
+    let args = &args.completed(&job.setup)?;
     let [read, about_mechanism] = doubted::remark_on(&job, args.quiet);
     if !args.quiet {
         remark_on_loads(&job);
@@ -175,6 +177,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
 
     // write and report
     guard.done();
+    let is_piped = args.out.as_deref().is_some_and(piped::is_output);
     let shown = !args.json && !args.quiet;
     let is_nothing = failure.is_some() || status == Status::Interrupted;
     let is_refused = is_nothing && session.run.rows() == 0;
@@ -182,13 +185,15 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
         // what an earlier run has written stays
         (Vec::new(), json::text(&json::record(&session.run)))
     } else {
-        tables.complete(&mut session, shown)?
+        tables.complete(&mut session, shown && !is_piped)?
     };
     if args.output.open {
         open_pages(&written);
     }
     if args.json {
         say(&record);
+    } else if shown && is_piped {
+        remark(summary::facts(&session.run, &[]).trim_end());
     } else if shown && !is_refused {
         say(&tables.overview(&session.run));
         remark(summary::facts(&session.run, &written).trim_end());
@@ -243,7 +248,10 @@ fn job(args: &Args, is_command: bool) -> Result<Job, Failure> {
 
 impl Args {
     /// Returns these arguments, with those of a set-up where they are not given.
-    fn completed(&self, setup: &Setup) -> Self {
+    ///
+    /// # Errors
+    /// More than one thing goes to standard output.
+    fn completed(&self, setup: &Setup) -> Result<Self, Failure> {
         let mut all = self.clone();
         let solve = &setup.solve;
         let IntegrationArgs { error, method } = &mut all.integration;
@@ -259,7 +267,14 @@ impl Args {
         if all.output.formats.is_empty() {
             all.output.formats.clone_from(&solve.formats);
         }
-        all
+        if let Some(format) = piped::run_format(self.out.as_deref(), &all.output.formats)? {
+            if self.json || self.output.animate {
+                let what = "standard output takes the table alone: -o DIR beside --json, --animate";
+                return Err(Failure::usage(what));
+            }
+            all.output.formats = vec![format];
+        }
+        Ok(all)
     }
 }
 

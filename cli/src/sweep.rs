@@ -5,7 +5,7 @@ use super::progress::Progress;
 use super::render::Sources;
 use super::run::{self, Single};
 use super::table::Table as Text;
-use super::{Exit, Failure, Outcome, interrupt, remark, say, width};
+use super::{Exit, Failure, Outcome, interrupt, piped, remark, say, width};
 use cognate::analysis::session::Options;
 use cognate::analysis::sweep::design::{self, Values};
 use cognate::analysis::sweep::{Follow, Row, Sweep, Table};
@@ -33,30 +33,33 @@ A parameter is an argument of a statement (PART/2.MASS), a number of a list (MAR
 becomes a number (VARIABLE/3). Measures are max, min, mean, rms, first, last, time_of_max and time_of_min of an
 expression or of a column of the results, at the outputs.")]
 pub struct Args {
-    /// Command file (.acf), which every run obeys, or dataset (.adm)
+    /// Command file (.acf), which every run obeys, or dataset (.adm); - reads a dataset from
+    /// standard input
+    #[arg(value_parser = piped::model())]
     model: PathBuf,
     /// Parameter and its values: A:B:N is N values from A to B, or a list with commas (repeatable)
+    /// [default: none, unless a table is the design]
     #[arg(long, value_name = "NAME=VALUES")]
     set: Vec<String>,
-    /// Number of each run, as max(DX(12,21)) (repeatable)
+    /// Number of each run, as max(DX(12,21)) (repeatable) [default: none, at least one is needed]
     #[arg(long, value_name = "MEASURE")]
     measure: Vec<String>,
     /// grid: all combinations; latin: a latin hypercube of --runs points; or a table (.csv) with a
     /// column a parameter
     #[arg(long, value_name = "DESIGN", default_value = "grid")]
     design: String,
-    /// Runs of a latin hypercube
+    /// Runs of a latin hypercube [default: none, it needs them]
     #[arg(long, value_name = "N")]
     runs: Option<usize>,
     /// Seed of a latin hypercube: the same seed gives the same points
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
-    /// Threads; as many as there are cores when not given
+    /// Threads [default: as many as there are processors]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// Table to write or to go on with: .csv, or .parquet beside its .csv; MODEL_sweep.csv when not
-    /// given
-    #[arg(long, short, value_name = "FILE")]
+    /// Table to write or to go on with: .csv, or .parquet beside its .csv [default:
+    /// MODEL_sweep.csv]
+    #[arg(long, short, value_name = "FILE", value_parser = piped::refused(piped::GROWS))]
     out: Option<PathBuf>,
     #[command(flatten)]
     span: SpanArgs,

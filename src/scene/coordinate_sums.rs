@@ -17,6 +17,7 @@ use super::{CoordinateSum, Displacement, LinkMotion, MarkerOnLink, Scene, Source
 use crate::expr::measures::Measure;
 use crate::physics::coupler::Gauge;
 use crate::physics::kinematic::kinematic;
+use crate::random::Random;
 use crate::scalar::{Dual, Jet, Scalar};
 use crate::space::{Frame, MarkerState};
 use std::cell::OnceCell;
@@ -212,15 +213,12 @@ struct Draw {
 impl Draw {
     /// Draws the coordinates of a seed; of `seed` 0 all are zero.
     fn new(scene: &Scene, seed: u64) -> Self {
-        let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let mut random = Random(seed);
         let mut draw = || {
             if seed == 0 {
                 return 0.0;
             }
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+            random.between_ones()
         };
         let mut q: Vec<f64> = (0..scene.layout.n_q).map(|_| draw()).collect();
         for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {

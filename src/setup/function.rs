@@ -88,6 +88,11 @@ impl Ordinate {
         Self::Torque,
     ];
 
+    /// Returns the words of all quantities that can be said.
+    pub fn words() -> [&'static str; 8] {
+        Self::ALL.map(Self::word)
+    }
+
     /// Returns its word in the file.
     pub fn word(self) -> &'static str {
         match self {

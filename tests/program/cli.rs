@@ -238,6 +238,8 @@ fn every_command_has_help_with_an_example() {
         .unwrap();
     let verbs: Vec<&str> = commands
         .lines()
+        // what stands further in goes on with a line
+        .filter(|l| !l.starts_with("   "))
         .filter_map(|l| l.split_whitespace().next())
         .collect();
     assert!(verbs.len() >= 5, "{verbs:?}");
@@ -410,7 +412,7 @@ fn a_mistake_on_the_command_line_costs_no_results() {
     for (more, code, said) in [
         (["--column", "DX(41,2x2)"], 3, "--column:1:7"),
         (["--column", "DX(41,99)"], 3, "MARKER/99 does not exist"),
-        (["--method", "RADAU7"], 4, "RADAU5"),
+        (["--method", "RADAU7"], 2, "RADAU5"),
         (["--error", "0"], 4, "--error: the permitted error"),
     ] {
         let done = run(&more);
@@ -547,9 +549,9 @@ fn a_method_that_does_not_exist_is_a_mistake_and_the_others_are_named() {
     let example = "examples/slider_crank.acf";
     let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("no_method");
     let done = cognate(&["run", example, "--method", "RUNGE", "--out", path(&dir)]);
-    assert_eq!(done.code, 4, "{}", done.err);
+    assert_eq!(done.code, 2, "{}", done.err);
     assert!(
-        done.err.contains("no method `RUNGE`") && done.err.contains("RADAU5"),
+        done.err.contains("RUNGE") && done.err.contains("RADAU5"),
         "{}",
         done.err
     );

@@ -26,6 +26,7 @@ mod manual;
 mod motion;
 mod names;
 mod pages;
+mod piped;
 mod plots;
 mod prompt;
 mod readers;

@@ -1,7 +1,7 @@
 //! `cognate runs compare`: the largest differences between two runs, channel by channel.
 
 use crate::table::Table;
-use crate::{Exit, Outcome, remark, say, width};
+use crate::{Exit, Outcome, piped, remark, say, width};
 use cognate::diagnostic::Diagnostic;
 use cognate::results::comparison::{Comparison, Difference, compare};
 use cognate::results::format::Format;
@@ -22,14 +22,18 @@ const PREFERRED: [&str; 5] = ["csv", "table.json", "parquet", "res", "gra"];
 /// is interpolated.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Name of a run with its folder, or a file of results of any format
+    /// Name of a run with its folder, or a file of results of any format; - reads .csv from
+    /// standard input, gra:- and so on others
+    #[arg(value_parser = piped::results())]
     first: PathBuf,
-    /// The other
+    /// The other; - reads .csv from standard input, gra:- and so on others
+    #[arg(value_parser = piped::results())]
     second: PathBuf,
     /// Compare at all output times of the first; the second is taken as straight between its own
     #[arg(long)]
     interpolate: bool,
-    /// End with exit code 8 where a channel differs by more than this part of its range
+    /// End with exit code 8 where a channel differs by more than this part of its range [default:
+    /// any difference is fine]
     #[arg(long, value_name = "PART", value_parser = part)]
     tolerance: Option<f64>,
     /// Show all channels, also those without difference
@@ -94,7 +98,10 @@ fn tables_of(named: &Path) -> Result<Vec<(usize, PathBuf)>, Diagnostic> {
     let is_table = Format::row(&ending.to_lowercase()).is_some_and(is_both);
     let run = kept::find(named);
     let is_record = |run: &KeptRun| run.record_file() == named;
-    if named.exists() && (is_table || run.is_err()) && !run.as_ref().is_ok_and(is_record) {
+    if cognate::disk::is_there(named)
+        && (is_table || run.is_err())
+        && !run.as_ref().is_ok_and(is_record)
+    {
         // other formats of the run do not matter: this one was chosen
         return Ok(vec![(PREFERRED.len(), named.to_owned())]);
     }

@@ -4,7 +4,7 @@ mod json;
 mod markdown;
 
 use super::card::wrapped;
-use super::{Exit, Outcome, say, width};
+use super::{Exit, Outcome, piped, say, width};
 use cognate::dataset::manual::{self, Effect, Entry, Example, Page};
 use cognate::dataset::value::Kind;
 use cognate::diagnostic::Diagnostic;
@@ -21,11 +21,11 @@ Examples:
 pub struct Args {
     /// Keyword of a statement or command; abbreviations are understood
     name: Option<String>,
-    /// Print one of the models of the manual, dataset and commands
+    /// Print one of the models of the manual, dataset and commands [default: none]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["name", "json"])]
     model: Option<String>,
-    /// Of --model: write the two files into this folder instead
-    #[arg(long, value_name = "DIR", requires = "model")]
+    /// Of --model: write the two files into this folder instead [default: they are printed]
+    #[arg(long, value_name = "DIR", requires = "model", value_parser = piped::refused(piped::SEVERAL))]
     out: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]

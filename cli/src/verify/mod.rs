@@ -4,7 +4,7 @@ pub mod text;
 
 use super::run::{Job, has_commands, script_with, timed_read};
 use super::setup::{Asked, loads_acting};
-use super::{Exit, Failure, Outcome, complain_in_files, draw, moved, remark, say};
+use super::{Exit, Failure, Outcome, complain_in_files, draw, moved, piped, remark, say};
 use cognate::analysis::verify::{Verification, verify};
 use cognate::dataset::Dataset;
 use cognate::dataset::command::{Command, Step};
@@ -23,12 +23,15 @@ Examples:
   cognate verify four_bar.adm --draw four_bar.svg
   cognate verify robot.acf --json")]
 pub struct Args {
-    /// Dataset (.adm), or command file (.acf): then the model as it is before the first simulation
+    /// Dataset (.adm), or command file (.acf): then the model as it is before the first simulation;
+    /// - reads a dataset from standard input
+    #[arg(value_parser = piped::model())]
     model: PathBuf,
     /// Print the findings as JSON on standard output
     #[arg(long)]
     json: bool,
-    /// Draw the mechanism (.svg, .png, .pdf); what fixes the same twice stands out
+    /// Draw the mechanism (.svg, .png, .pdf); what fixes the same twice stands out [default: no
+    /// picture]
     #[arg(long, value_name = "FILE")]
     draw: Option<PathBuf>,
 }

@@ -10,6 +10,7 @@ use crate::analysis::start::assemble::{self, CLOSED, Redundant};
 use crate::diagnostic::Diagnostic;
 use crate::numeric::connected::SparseRow;
 use crate::numeric::rank::Rank;
+use crate::random::Random;
 use crate::scene::Scene;
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::Equations;
@@ -109,7 +110,7 @@ pub(super) struct Surroundings<'s> {
     /// displacements that the motions prescribe at `q`   (n_motions)
     values: Vec<f64>,
     mover: Mover,
-    draw: Draw,
+    random: Random,
 }
 
 impl<'s> Surroundings<'s> {
@@ -127,7 +128,7 @@ impl<'s> Surroundings<'s> {
             return None;
         }
         let mover = Mover::new(&scene);
-        let draw = Draw(1);
+        let random = Random(1);
         Some(Self {
             scene,
             t,
@@ -137,14 +138,14 @@ impl<'s> Surroundings<'s> {
             free,
             values,
             mover,
-            draw,
+            random,
         })
     }
 
     /// Makes a step of this size, motions at other values or not; returns where it leads, and the
     /// configuration there, or `None` where the rows cannot be closed.
     pub fn step(&mut self, (step, drives): (f64, bool)) -> Option<(Place, Configuration)> {
-        let (scene, w, draw) = (self.scene, &self.w, &mut self.draw);
+        let (scene, w, random) = (self.scene, &self.w, &mut self.random);
         let motions: Vec<f64> = self
             .values
             .iter()
@@ -155,13 +156,13 @@ impl<'s> Surroundings<'s> {
                 } else {
                     scene.size
                 };
-                let by = step * one * draw.next();
+                let by = step * one * random.between_ones();
                 if drives { value + by } else { *value }
             })
             .collect();
         let mut change = vec![0.0; w.len()];
         for direction in &self.free {
-            let share = draw.next();
+            let share = random.between_ones();
             for &(v, d) in direction {
                 change[v] += share * d;
             }
@@ -212,17 +213,4 @@ fn distance(scene: &Scene, w: &[f64], a: &[f64], b: &[f64]) -> f64 {
         .zip(w)
         .map(|(x, w)| x.abs() / w.sqrt())
         .fold(0.0, f64::max)
-}
-
-/// Draws numbers in (−1, 1), the same on every run.
-struct Draw(u64);
-
-impl Draw {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
 }

@@ -4,6 +4,7 @@ use super::metric::total_mass;
 use super::point::Point;
 use super::step::Pace;
 use super::{NoEquilibrium, Settler};
+use crate::random::Random;
 use crate::scene::equations::Equations;
 use nalgebra::{DMatrix, DVector};
 
@@ -346,12 +347,9 @@ impl Settler<'_> {
             return true;
         };
         // noise of any sign; a few samples tell how far it goes
-        let mut signs = 0x9e37_79b9_7f4a_7c15_u64;
+        let mut random = Random(1);
         let reach = (0..NOISE_SAMPLES).filter_map(|_| {
-            let any = noise.map(|n| {
-                signs = signs.rotate_left(7).wrapping_mul(0xd128_2a95_8b1c_9e6d);
-                if signs >> 63 == 0 { n } else { -n }
-            });
+            let any = noise.map(|n| n * random.sign());
             let step = self.newton(p, jacobian, &pace, &any)?;
             Some(self.excess(&step))
         });

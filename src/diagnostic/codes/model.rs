@@ -18,7 +18,7 @@ file that is no command is taken as the name of the dataset; FILE/MODEL=name is 
         name: "no_text",
         summary: "a file is no text",
         explanation: "\
-Datasets, command files and logs are lines of text in UTF-8, UTF-16 or Latin-1; a stray control character is passed over.
+Datasets, command files and logs are lines of text in UTF-8, UTF-16 or Windows-1252; a stray control character is passed over.
 What a program keeps in a format of its own (.bin, archives, pictures, Parquet) is exported as a dataset first.
 
     cognate run model.adm --end 1     and not model.bin",

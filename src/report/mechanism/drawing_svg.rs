@@ -199,10 +199,7 @@ impl Paper {
                 middle
             }
         };
-        let escaped = word
-            .replace('&', "&amp;")
-            .replace('<', "&lt;")
-            .replace('>', "&gt;");
+        let escaped = quick_xml::escape::partial_escape(word);
         let look =
             "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"4\" paint-order=\"stroke\"";
         *text += &format!(

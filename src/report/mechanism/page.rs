@@ -6,13 +6,14 @@
 
 use super::bodies::name_of;
 use super::channels::Channels;
-use super::pack::{Packed, base64};
+use super::pack::Packed;
 use super::{Form, Look, Pictured, Role, Track};
 use crate::dataset::surface::Surfaces;
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementId, Family, Model};
 use crate::results::{Kind, Run, msg};
 use crate::space::rotation;
+use base64::prelude::{BASE64_STANDARD, Engine};
 use flate2::Compression;
 use flate2::write::{GzDecoder, GzEncoder};
 use serde_json::{Value, json};
@@ -97,7 +98,10 @@ pub fn page(model: &Model, pictured: &Pictured, runs: &[Shown<'_>]) -> String {
     all.extend(text.as_bytes());
     all.resize(all.len().next_multiple_of(4), b' ');
     all.extend(bytes);
-    document(&title(model, runs), &base64(&compressed(&all)))
+    document(
+        &title(model, runs),
+        &BASE64_STANDARD.encode(compressed(&all)),
+    )
 }
 
 fn title(model: &Model, runs: &[Shown<'_>]) -> String {
@@ -109,13 +113,7 @@ fn title(model: &Model, runs: &[Shown<'_>]) -> String {
 
 /// Returns the document around the data.
 fn document(title: &str, data: &str) -> String {
-    let escaped = |c: char| match c {
-        '&' => "&amp;".to_owned(),
-        '<' => "&lt;".to_owned(),
-        '>' => "&gt;".to_owned(),
-        c => c.to_string(),
-    };
-    let title: String = title.chars().map(escaped).collect();
+    let title = quick_xml::escape::partial_escape(title);
     // inside a script nothing may look like its end
     let viewer = viewer().replace("</script", "<\\/script");
     format!(
