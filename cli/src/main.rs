@@ -23,6 +23,7 @@ mod example;
 mod explain;
 mod export;
 mod fmt;
+mod foreseen;
 mod formula;
 mod functions;
 mod group;
@@ -105,7 +106,7 @@ enum Verb {
 }
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 done, 1 our mistake, 2 usage, 3 input (syntax, names), 4 model (freedom, contradiction, inertia),
+Exit codes: 0 done, 1 a mistake in cognate itself, 2 usage, 3 input (syntax, names), 4 model (freedom, contradiction, inertia),
 5 no equilibrium, 6 integration stopped early, 7 limit (time, memory, steps), 8 a check failed,
 9 results could not be written, 130 interrupted.";
 

@@ -636,8 +636,7 @@ pub(super) fn script_with(
                 read_seconds: 0.0,
             });
         }
-        let d = Diagnostic::error("no_model", format!("{} names no dataset", path.display()));
-        return Err(d.help("begin it with FILE/MODEL=name").into());
+        return Err(names_no_dataset(path).into());
     };
     let base = script.output.clone().unwrap_or_else(|| stem(path));
     if !file.exists() {
@@ -653,6 +652,13 @@ pub(super) fn script_with(
         remarks: script.diagnostics,
         read_seconds,
     })
+}
+
+/// Returns the mistake of commands that name no dataset, where none is given beside them.
+pub(super) fn names_no_dataset(path: &Path) -> Diagnostic {
+    let what = format!("{} names no dataset", path.display());
+    Diagnostic::error("no_model", what)
+        .help("begin it with FILE/MODEL=name, or give the dataset behind the command file")
 }
 
 /// Creates the failure for a missing dataset of a command file: names the line, and the files that

@@ -6,10 +6,12 @@
 
 mod cause;
 pub mod codes;
+mod count;
 mod error;
 mod subject;
 
 pub use cause::Cause;
+pub use count::counted;
 pub use error::Error;
 pub use subject::Subject;
 
