@@ -13,14 +13,7 @@ pub(crate) use std::fs::{
 };
 #[cfg(feature = "parquet")]
 pub(crate) use std::fs::{create_dir, remove_dir, write};
-use std::io::Read;
 use std::path::Path;
-
-/// Reads what stands at the beginning of a file, as much as fits; returns how many bytes. For files
-/// that the system makes up: one question of three instead of five.
-pub(crate) fn read_beginning(path: &Path, bytes: &mut [u8]) -> std::io::Result<usize> {
-    File::open(path)?.read(bytes)
-}
 
 /// Holds a file until the result is dropped, or this process ends in whatever way: others see by
 /// [`is_held`] that somebody is at work. `None` where that is not possible.

@@ -1,11 +1,13 @@
 //! `cognate report`: a model at many requests by all methods, as error against time.
 
 use super::arguments::{SpanArgs, UnsolvedArgs};
+use super::progress::Progress;
 use super::run::{self, Single};
 use super::{Exit, Failure, Outcome, interrupt, limit, remark, say};
 use cognate::analysis::session::Options;
 use cognate::analysis::watch::Watch;
-use cognate::analysis::work_precision::{Question, Study, page, survey};
+use cognate::analysis::work_limit::ProcessorClock;
+use cognate::analysis::work_precision::{Follow, Question, Study, page, survey};
 use cognate::model::{Model, RequestKind};
 use cognate::results::json;
 use cognate::results::output_folder::OutputFolder;
@@ -56,12 +58,27 @@ const WANTED: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 /// Parts whose places are compared where a model asks for no channel, at most.
 const MOST_PARTS: usize = 100;
 
-/// Listens for Ctrl-C, after which the study ends with what it has.
-struct Terminal;
+/// Shows progress, and listens for Ctrl-C, after which the study ends with what it has.
+struct Terminal {
+    progress: Progress,
+    /// the run that goes on
+    run: String,
+    /// its clock, and the processor time of the runs before, in s
+    clock: (ProcessorClock, f64),
+}
 
 impl Watch for Terminal {
     fn interrupted(&mut self) -> bool {
+        let (clock, before) = &self.clock;
+        self.progress.work(|| before + clock.seconds(), &self.run);
         interrupt::requested()
+    }
+}
+
+impl Follow for Terminal {
+    fn begins(&mut self, (method, request): (&str, f64), spent: f64) {
+        self.run = format!("{method} at {request:.0e}");
+        self.clock = (ProcessorClock::start(), spent);
     }
 }
 
@@ -88,6 +105,10 @@ pub fn run(args: &Args) -> Outcome {
     let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("."));
     let folder = OutputFolder::open(&dir, &name)?;
     let parent = args.model.parent().map(Path::to_path_buf);
+    let wanted = match args.want.is_empty() {
+        true => WANTED.to_vec(),
+        false => args.want.clone(),
+    };
     let question = Question {
         name: job.base,
         options: args.unsolved.given_to(Options {
@@ -98,16 +119,19 @@ pub fn run(args: &Args) -> Outcome {
         steps: &job.steps,
         folders: args.out.clone().into_iter().chain(parent).collect(),
         requests: requests(args)?,
+        wanted: wanted.clone(),
         methods: args.methods.iter().map(|m| m.to_uppercase()).collect(),
         budget: args.budget,
         trusted: None,
     };
-    let study = survey(&question, &mut Terminal).map_err(|e| Failure::in_model(&dataset, e))?;
-    let wanted = if args.want.is_empty() {
-        WANTED.to_vec()
-    } else {
-        args.want.clone()
+    let mut terminal = Terminal {
+        progress: Progress::new(false, 0.0, args.budget),
+        run: String::new(),
+        clock: (ProcessorClock::start(), 0.0),
     };
+    let study = survey(&question, &mut terminal);
+    terminal.progress.done();
+    let study = study.map_err(|e| Failure::in_model(&dataset, e))?;
     let files = write(folder, &name, &study, &wanted, read)?;
     if args.json {
         say(&json::text(&study.json(&wanted)));

@@ -3,6 +3,7 @@
 use super::chart::{COLOURS, Chart, Curve};
 use super::write::duration;
 use super::{Reference, Row, Study};
+use crate::diagnostic::counted;
 use crate::numeric::METHODS;
 use std::fmt::Write as _;
 
@@ -65,6 +66,11 @@ fn section(page: &mut String, study: &Study, wanted: &[f64]) {
     if study.interrupted {
         *page += "<p>The study was interrupted: not all runs were made.</p>\n";
     }
+    if !study.is_integrated {
+        runs(page, study);
+        *page += "</section>\n";
+        return;
+    }
     let methods = methods(study);
     *page += "<p class=\"legend\">";
     for method in &methods {
@@ -111,10 +117,10 @@ pub(super) fn charts(study: &Study, methods: &[&str]) -> [Chart; 2] {
             }
             let (x, y) = point(row, error);
             let what = format!(
-                "{method} at {:.0e}: error {error:.1e} in {}, {} steps",
+                "{method} at {:.0e}: error {error:.1e} in {}, {}",
                 row.request,
                 duration(row.cost.solve),
-                row.cost.counts.steps
+                counted(row.cost.counts.steps, "step")
             );
             Some((x, y, what))
         });
