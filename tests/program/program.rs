@@ -2,6 +2,8 @@
 
 #[path = "../common/command.rs"]
 mod command;
+#[path = "../common/needs.rs"]
+mod needs;
 #[path = "../common/repository.rs"]
 mod repository;
 #[path = "../common/results.rs"]
@@ -17,6 +19,7 @@ mod doors;
 mod elements;
 mod exchange;
 mod first_hour;
+mod foreseen;
 mod gallery;
 mod groups;
 #[cfg(feature = "geometry")]
