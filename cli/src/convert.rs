@@ -2,6 +2,7 @@
 
 use super::output::StyleArgs;
 use super::{Exit, Failure, Outcome, remark};
+use cognate::diagnostic::counted;
 use cognate::results::{self, Run};
 use std::path::{Path, PathBuf};
 
@@ -46,9 +47,9 @@ pub fn run(args: &Args) -> Outcome {
     select_sequences(&mut run, &args.sequences)?;
     results::write(&run, &args.output, args.style.style())?;
     remark(format!(
-        "{} columns, {} rows in {}",
-        run.table_columns().len(),
-        run.table_rows().count(),
+        "{}, {} in {}",
+        counted(run.table_columns().len(), "column"),
+        counted(run.table_rows().count(), "row"),
         args.output.display()
     ));
     Ok(Exit::Done)

@@ -5,7 +5,7 @@ use super::output::StyleArgs;
 use super::recorded::model_of;
 use super::{Exit, Failure, Outcome, remark, say, summary, width};
 use cognate::analysis::motion::{MarkerMeasure, Recorded};
-use cognate::diagnostic::{Cause, Diagnostic};
+use cognate::diagnostic::{Cause, Diagnostic, counted};
 use cognate::model::{ElementId, ElementKind, Model};
 use cognate::results::{self, Component, Entity, Run};
 use std::path::PathBuf;
@@ -148,7 +148,7 @@ pub fn run(args: &Args) -> Outcome {
         Some(out) => {
             results::write(&group, out, args.style.style())?;
             let n = group.columns.len() - 1;
-            remark(format!("{n} functions in {}", out.display()));
+            remark(format!("{} in {}", counted(n, "function"), out.display()));
         }
         None => {
             let n_rows = group.table_rows().count();

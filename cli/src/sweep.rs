@@ -9,7 +9,7 @@ use super::{Exit, Failure, Outcome, interrupt, remark, say, width};
 use cognate::analysis::session::Options;
 use cognate::analysis::sweep::design::{self, Values};
 use cognate::analysis::sweep::{Follow, Row, Sweep, Table};
-use cognate::diagnostic::{Diagnostic, Error};
+use cognate::diagnostic::{Diagnostic, Error, counted};
 use cognate::results::format::Style;
 use cognate::results::{self, Status, digits_of_six};
 use std::path::{Path, PathBuf};
@@ -95,7 +95,10 @@ pub fn run(args: &Args) -> Outcome {
     let missing = table.missing();
     if !args.quiet && table.n_found() > 0 {
         let (found, all, out) = (table.n_found(), points.len(), out.display());
-        remark(format!("{found} of {all} runs are in {out} already"));
+        remark(format!(
+            "{out} has {found} of {} already",
+            counted(all, "run")
+        ));
     }
     interrupt::results_begin();
 
@@ -113,7 +116,8 @@ pub fn run(args: &Args) -> Outcome {
     if interrupt::requested() && done < points.len() {
         let (all, out) = (points.len(), out.display());
         remark(format!(
-            "interrupted: {done} of {all} runs are in {out}; the same command goes on"
+            "interrupted: {out} has {done} of {}; the same command goes on",
+            counted(all, "run")
         ));
         return Ok(Exit::Interrupted);
     }
@@ -127,7 +131,11 @@ pub fn run(args: &Args) -> Outcome {
         say(&overview(&sweep, table.rows()));
         let files = [&out].into_iter().chain(&format);
         let files: Vec<String> = files.map(|file| file.display().to_string()).collect();
-        remark(format!("{} runs in {}", points.len(), files.join(", ")));
+        remark(format!(
+            "{} in {}",
+            counted(points.len(), "run"),
+            files.join(", ")
+        ));
     }
     Ok(told(args, table.rows()))
 }
@@ -356,14 +364,16 @@ fn told(args: &Args, rows: &[Row]) -> Exit {
     if let Some(first) = failed.clone().next() {
         let (run, reason) = (first.run, &first.reason);
         remark(format!(
-            "{n_failed} of {n} runs failed; run {run}: {reason}"
+            "{n_failed} of {} failed; run {run}: {reason}",
+            counted(n, "run")
         ));
     }
     let warned = rows.iter().filter(|row| row.warnings > 0);
     if let (false, Some(first)) = (args.quiet, warned.clone().next()) {
         let (n_warned, run) = (warned.count(), first.run);
         remark(format!(
-            "{n_warned} of {n} runs have warnings, run {run} first: cognate run tells them for a model with these numbers"
+            "{n_warned} of {} have warnings; to see those of run {run}, put its numbers into the model and use cognate run",
+            counted(n, "run")
         ));
     }
     match failed.into_iter().next() {

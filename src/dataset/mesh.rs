@@ -145,7 +145,7 @@ fn shell(text: &str) -> Result<Vec<[f64; 3]>, String> {
     let mut out = Vec::new();
     for _ in 0..n {
         let Some((line, words)) = rows.next() else {
-            return Err(format!("it ends early: {} points of {n}", out.len()));
+            return Err(format!("it ends early, after {} of {n} points", out.len()));
         };
         let numbers: Option<Vec<f64>> = words.iter().map(|w| number(w)).collect();
         match numbers.as_deref() {

@@ -10,7 +10,7 @@ use super::names::Names;
 use super::signature::Kind;
 use super::symbols::{self, Symbol};
 use super::token::{self, About, Fault, FaultKind, Lexer, Open};
-use crate::diagnostic::{Diagnostic, Span, near_names};
+use crate::diagnostic::{Diagnostic, Span, counted, near_names};
 
 /// Returns the diagnostic for the first mistake of a text.
 pub(crate) fn explain(text: &str, dialect: Dialect, names: &Names, fault: &Fault) -> Diagnostic {
@@ -527,7 +527,7 @@ fn is_constant(meaning: Symbol) -> bool {
 fn arity(name: &str, (least, most): (usize, usize), signature: String, count: usize) -> Said {
     let takes = match (least, most) {
         (1, 1) => "one argument".to_string(),
-        (a, b) if a == b => format!("{a} arguments"),
+        (a, b) if a == b => counted(a, "argument"),
         (a, b) if b > 1000 => format!("{a} or more arguments"),
         (a, b) => format!("{a} to {b} arguments"),
     };

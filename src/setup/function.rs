@@ -11,7 +11,7 @@
 //! for s − p has no curvature at its ends.
 
 use super::Named;
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Diagnostic, Span, counted};
 use crate::disk;
 use crate::encoding::as_utf8;
 use crate::expr::Expr;
@@ -150,7 +150,9 @@ impl UserFunction {
         match &self.shape {
             Shape::Expression(text) => format!("expression {}", text.text),
             Shape::Direct(text) => format!("direct entry {}", text.text),
-            Shape::Points { points, .. } => format!("spline through {} points", points.len()),
+            Shape::Points { points, .. } => {
+                format!("spline through {}", counted(points.len(), "point"))
+            }
         }
     }
 

@@ -15,7 +15,7 @@ use cognate::analysis::verify::verify;
 use cognate::analysis::work_limit::ProcessClock;
 use cognate::dataset::Reading;
 use cognate::dataset::command::{Command, Step};
-use cognate::diagnostic::{Cause, Diagnostic, Error, Severity};
+use cognate::diagnostic::{Cause, Diagnostic, Error, Severity, counted};
 use cognate::model::{ElementKind, Model};
 use cognate::report::{Curve, Plot};
 use cognate::results::{self, Status, digits_of_six};
@@ -73,16 +73,19 @@ impl Loaded {
     pub fn info(&self) -> String {
         let model = &self.reading.model;
         let mut text = format!("{}: {}\n", self.file.display(), model.title.trim());
-        let counted = ElementKind::ALL.iter();
-        let counted = counted.map(|kind| (model.numbers(*kind).len(), kind.keyword()));
-        let counted = counted.filter(|(n, _)| *n > 0);
-        let counted: Vec<String> = counted.map(|(n, kind)| format!("{n} {kind}")).collect();
-        text += &format!("{}\n", counted.join(", "));
+        let kinds = ElementKind::ALL.iter();
+        let kinds = kinds.map(|kind| (model.numbers(*kind).len(), kind.keyword()));
+        let kinds = kinds.filter(|(n, _)| *n > 0);
+        let kinds: Vec<String> = kinds.map(|(n, kind)| format!("{n} {kind}")).collect();
+        text += &format!("{}\n", kinds.join(", "));
         let warnings = self.reading.diagnostics.iter();
         let warnings = warnings.filter(|d| d.severity == Severity::Warning).count();
         if warnings > 0 {
             let files = self.file.display();
-            text += &format!("{warnings} warnings: cognate check {files} tells them\n");
+            text += &format!(
+                "{}, which cognate check {files} shows\n",
+                counted(warnings, "warning")
+            );
         }
         let ends = self.steps.iter().filter(|s| is_simulation(s));
         let ends: Vec<&str> = ends.map(|s| s.text.as_str()).collect();
@@ -91,7 +94,11 @@ impl Loaded {
         }
         if let Some(session) = &self.run {
             let run = &session.run;
-            text += &format!("{}: {} rows", run.record.status.word(), run.rows());
+            text += &format!(
+                "{}: {}",
+                run.record.status.word(),
+                counted(run.rows(), "row")
+            );
             text += &format!(", up to {}\n", digits_of_six(session.time()));
         }
         text

@@ -8,7 +8,7 @@ use crate::eval::DialectName;
 use crate::formula::{Formula, Setting, derivative_names, give, times};
 use crate::{Failure, anatomy};
 use crate::{card, explain, plot, statements};
-use cognate::diagnostic::{Cause, Diagnostic};
+use cognate::diagnostic::{Cause, Diagnostic, counted};
 use cognate::expr::ast::Dialect;
 use cognate::expr::{Profile, parse, symbol};
 use cognate::report::picture::{self, PictureFormat};
@@ -112,17 +112,19 @@ impl Session {
                 .setting
                 .data
                 .read_markers(Path::new(rest))
-                .map(|()| format!("{} markers\n", self.setting.data.markers.len())),
-            ":splines" => self
-                .setting
-                .data
-                .read_splines(Path::new(rest))
-                .map(|()| format!("{} splines\n", self.setting.data.bindings.splines.len())),
-            ":curves" => self
-                .setting
-                .data
-                .read_curves(Path::new(rest))
-                .map(|()| format!("{} curves\n", self.setting.data.bindings.curves.len())),
+                .map(|()| format!("{}\n", counted(self.setting.data.markers.len(), "marker"))),
+            ":splines" => self.setting.data.read_splines(Path::new(rest)).map(|()| {
+                format!(
+                    "{}\n",
+                    counted(self.setting.data.bindings.splines.len(), "spline")
+                )
+            }),
+            ":curves" => self.setting.data.read_curves(Path::new(rest)).map(|()| {
+                format!(
+                    "{}\n",
+                    counted(self.setting.data.bindings.curves.len(), "curve")
+                )
+            }),
             ":plot" => return self.plot(rest),
             ":explain" => return self.explain(rest),
             ":load" | ":info" | ":list" | ":show" | ":rename" | ":delete" | ":save" | ":verify"

@@ -2,7 +2,7 @@
 
 use crate::table::Table;
 use crate::{Exit, Outcome, remark, say, width};
-use cognate::diagnostic::Diagnostic;
+use cognate::diagnostic::{Diagnostic, counted};
 use cognate::results::comparison::{Comparison, Difference, compare};
 use cognate::results::format::Format;
 use cognate::results::kept::{self, KeptRun};
@@ -120,8 +120,8 @@ fn print(found: &Comparison, files: [&Path; 2], all: bool, time_unit: &str) {
     }
     let [a, b] = files.map(|f| f.display().to_string());
     let mut facts = vec![format!(
-        "{differing} of {} channels differ between {a} and {b}",
-        found.channels.len()
+        "{differing} of {} differ between {a} and {b}",
+        counted(found.channels.len(), "channel")
     )];
     if differing > shown {
         facts.push(format!(
@@ -132,19 +132,26 @@ fn print(found: &Comparison, files: [&Path; 2], all: bool, time_unit: &str) {
     let missing = found.channels.iter().filter(|d| d.missing > 0).count();
     if missing > 0 {
         facts.push(format!(
-            "{missing} channels have outputs at which one run alone has a value"
+            "in {}, one run alone has values at some outputs",
+            counted(missing, "channel")
         ));
     }
     facts.push(match found.interpolated {
         true => format!(
-            "at {} output times of {a}; {b} is taken as straight between its outputs",
-            found.outputs
+            "at {} of {a}; {b} is taken as straight between its outputs",
+            counted(found.outputs, "output time")
         ),
-        false => format!("at {} output times that both have", found.outputs),
+        false => format!(
+            "at {} that both have",
+            counted(found.outputs, "output time")
+        ),
     });
     for (file, n) in [&a, &b].into_iter().zip(found.left_out) {
         if n > 0 && !(found.interpolated && file == &b) {
-            facts.push(format!("{n} outputs of {file} have no partner: left out"));
+            facts.push(format!(
+                "left out: {} of {file} at times that the other has not",
+                counted(n, "output")
+            ));
         }
     }
     for (file, names) in [&a, &b].into_iter().zip(&found.alone) {

@@ -3,7 +3,7 @@
 //! A design knows nothing of the model: it makes rows of numbers from lists and ranges.
 
 use crate::dataset::value::Number;
-use crate::diagnostic::{Diagnostic, Error};
+use crate::diagnostic::{Diagnostic, Error, counted};
 
 /// Runs that one design may ask for.
 pub const MOST_RUNS: usize = 1_000_000;
@@ -123,7 +123,10 @@ pub fn grid(values: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Error> {
     let runs = values.iter().map(Vec::len);
     let runs = runs.fold(1, usize::saturating_mul);
     if runs > MOST_RUNS {
-        let what = format!("the grid has {runs} runs; a sweep has at most {MOST_RUNS}");
+        let what = format!(
+            "the grid has {}; a sweep has at most {MOST_RUNS}",
+            counted(runs, "run")
+        );
         let d = Diagnostic::error("bad_sweep", what);
         return Err(d
             .help("--design latin --runs N spreads N runs over all")

@@ -26,7 +26,7 @@ use crate::analysis::session::{Analysis, Options, Session};
 use crate::analysis::system::closures::{Call, Hook};
 use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
-use crate::diagnostic::{Diagnostic, Error};
+use crate::diagnostic::{Diagnostic, Error, counted};
 use crate::model::{ElementKind, Model};
 use crate::results::Status;
 use std::collections::HashMap;
@@ -271,7 +271,10 @@ impl Sweep {
     ) -> Result<(), Error> {
         self.check(points)?;
         if let Some(run) = wanted.iter().find(|&&run| run >= points.len()) {
-            let what = format!("run {run} is wanted, of {} points", points.len());
+            let what = format!(
+                "there is no run {run} among {}",
+                counted(points.len(), "point")
+            );
             return Err(Diagnostic::error("bad_sweep", what).into());
         }
         let wanted = &self.in_groups(points, wanted);
@@ -339,7 +342,11 @@ impl Sweep {
         for (k, point) in points.iter().enumerate() {
             if point.len() != n {
                 let given = point.len();
-                return refuse(format!("point {k} has {given} values for {n} parameters"));
+                return refuse(format!(
+                    "point {k} has {} for {}",
+                    counted(given, "value"),
+                    counted(n, "parameter")
+                ));
             }
             if let Some(at) = point.iter().position(|x| !x.is_finite()) {
                 let (name, x) = (self.parameters[at].name(), point[at]);

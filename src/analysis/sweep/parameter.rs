@@ -6,7 +6,7 @@ use crate::dataset::row::{
 };
 use crate::dataset::statement::{self, STATEMENTS};
 use crate::dataset::value::{Kind, Number, Value};
-use crate::diagnostic::{Cause, Diagnostic, Error, Span, near_names};
+use crate::diagnostic::{Cause, Diagnostic, Error, Span, counted, near_names};
 use crate::model::{ElementKind, Formula, Model, Place};
 
 /// A number of the model that a sweep sets.
@@ -166,7 +166,7 @@ impl Parameter {
         match all.get_mut(place) {
             Some(old) => *old = number,
             None => {
-                let what = format!("the model gives {n} numbers there");
+                let what = format!("the model gives {} there", counted(n, "number"));
                 return Err(wrong("bad_sweep", &self.name, what).into());
             }
         }

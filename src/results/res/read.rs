@@ -1,7 +1,7 @@
 //! Reading `.res` files of the XML form, tag by tag.
 
 use super::{EXPRESSIONS, text};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, counted};
 use crate::results::{
     Column, Component, Entity, Kind, Run, Sequence, Status, component_unit, malformed, number,
 };
@@ -285,7 +285,9 @@ impl Reading {
         }
         if dense || last != Some(given as u64) {
             return Err(format!(
-                "a step has {given} values where there are {width} components"
+                "a step has {} where there are {}",
+                counted(given, "value"),
+                counted(width, "component")
             ));
         }
         // components were taken out of the map, not out of the steps: the number is the place

@@ -6,7 +6,7 @@
 //! stand in columns of 12 characters and may touch. Orientation is given by Euler parameters e0 …
 //! e3. Records of other elements are not read: their layout is not known.
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, counted};
 use crate::results::gra::units_of_code;
 use crate::results::{Component, Entity, Kind, Run, component_unit, malformed, number};
 
@@ -45,7 +45,7 @@ impl Block<'_> {
             .ok_or_else(|| {
                 malformed(
                     self.line + line,
-                    format!("{width} numbers should stand here"),
+                    format!("a line of {} is expected here", counted(width, "number")),
                 )
             })
     }
