@@ -90,8 +90,9 @@ impl SymbolsArg {
     }
 }
 
+/// A direction to look from.
 #[derive(Clone, Copy, clap::ValueEnum)]
-enum From {
+pub enum From {
     /// square to the plane of the mechanism; in perspective where it has none
     Best,
     X,
@@ -196,8 +197,11 @@ fn write(
         let what = format!("{}: drawings are .svg, .png and .pdf", file.display());
         return Err(Failure::usage(what));
     }
-    let width = f64::from(width.clamp(200, 8000));
-    let text = drawing_svg::svg(&drawing(pictured, wanted), width, &run.units.length);
+    let text = drawing_svg::svg(
+        &drawing(pictured, wanted),
+        self::width(width),
+        &run.units.length,
+    );
     picture::write(&text, file)?;
     remark(file.display());
     Ok(())
@@ -230,8 +234,13 @@ fn nearest(times: &[f64], at: f64) -> usize {
     )
 }
 
+/// Returns a width that pictures may have, in px.
+pub fn width(px: u32) -> f64 {
+    f64::from(px.clamp(200, 8000))
+}
+
 /// Returns the view from a direction; `None`: that of the mechanism.
-fn view(from: From, own: &View) -> Option<View> {
+pub fn view(from: From, own: &View) -> Option<View> {
     match from {
         From::Best => None,
         From::X => Some(own.along(0)),

@@ -82,6 +82,7 @@ pub fn run(args: &Args) -> Outcome {
     for (graphics, why) in &found.left_out {
         remark(format!("{graphics} is not looked at: {why}"));
     }
+    tell_of_hulls(&found);
     if let Some(out) = &args.out {
         results::write(&over_time(&run, &model, &found), out, args.style.style())?;
         remark(format!("{} pairs in {}", found.pairs.len(), out.display()));
@@ -105,6 +106,7 @@ pub fn run(args: &Args) -> Outcome {
 pub fn overlaps(model: &Model, run: &Run, folders: &[PathBuf]) -> Result<Vec<Overlap>, Failure> {
     let recorded = Recorded::new(run, model);
     let found = interference(&recorded, model, &[], folders)?;
+    tell_of_hulls(&found);
     let shown: Vec<usize> = run.table_places(run.held()).collect();
     let mut all = Vec::new();
     for pair in found.pairs {
@@ -129,6 +131,13 @@ pub fn overlaps(model: &Model, run: &Run, folders: &[PathBuf]) -> Result<Vec<Ove
         });
     }
     Ok(all)
+}
+
+/// Says of which shells something is known of their convex hull alone.
+fn tell_of_hulls(found: &Interference) {
+    for (graphics, what) in &found.hulls {
+        remark(format!("{graphics} {what}"));
+    }
 }
 
 /// Returns the folders in which files of shells are looked for: those of the model and of the
@@ -207,6 +216,7 @@ fn as_json(run: &Run, found: &Interference) -> Value {
     json!({
         "length": run.units.length,
         "pairs": found.pairs.iter().map(pair).collect::<Vec<_>>(),
+        "hulls": found.hulls.iter().map(|(id, what)| json!({ "element": id.to_string(), "what": what })).collect::<Vec<_>>(),
         "left_out": left_out.map(|(id, why)| json!({ "element": id.to_string(), "why": why })).collect::<Vec<_>>(),
     })
 }

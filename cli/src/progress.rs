@@ -67,6 +67,11 @@ impl Progress {
             },
         );
     }
+    /// Shows that so many of all pictures are drawn.
+    pub fn pictures(&self, done: usize, all: usize) {
+        let text = || format!("{done} of {all} pictures");
+        self.show(done as f64, text, text);
+    }
     /// Shows that so many of all runs are done.
     pub fn runs(&self, done: usize, all: usize) {
         let text = || format!("{done} of {all} runs");

@@ -100,15 +100,36 @@ fn tree(svg: &str) -> Result<resvg::usvg::Tree, Diagnostic> {
 
 #[cfg(feature = "png")]
 fn png(svg: &str) -> Result<Vec<u8>, Diagnostic> {
+    pixmap(svg, DOTS_PER_PX)?.encode_png().map_err(failed)
+}
+
+/// Draws a picture with so many dots a px.
+#[cfg(feature = "png")]
+fn pixmap(svg: &str, per_px: f32) -> Result<resvg::tiny_skia::Pixmap, Diagnostic> {
     use resvg::tiny_skia::{Pixmap, Transform};
     let tree = tree(svg)?;
     let size = tree.size();
-    let dots = |px: f32| (px * DOTS_PER_PX).ceil() as u32;
+    let dots = |px: f32| (px * per_px).ceil() as u32;
     let dots = Pixmap::new(dots(size.width()), dots(size.height()));
     let mut dots = dots.ok_or_else(|| failed("it has no size"))?;
-    let larger = Transform::from_scale(DOTS_PER_PX, DOTS_PER_PX);
+    let larger = Transform::from_scale(per_px, per_px);
     resvg::render(&tree, larger, &mut dots.as_mut());
-    dots.encode_png().map_err(failed)
+    Ok(dots)
+}
+
+/// Returns the dots of a picture, one a px, red, green and blue, with its width and height.
+///
+/// # Errors
+/// When it cannot be drawn.
+#[cfg(feature = "gif")]
+pub(super) fn dots(svg: &str) -> Result<(Vec<[u8; 3]>, [u16; 2]), Diagnostic> {
+    let dots = pixmap(svg, 1.0)?;
+    let [Ok(width), Ok(height)] = [dots.width(), dots.height()].map(u16::try_from) else {
+        return Err(failed("it is too large"));
+    };
+    // pictures have a ground, on which nothing is transparent
+    let all = dots.pixels().iter().map(|p| [p.red(), p.green(), p.blue()]);
+    Ok((all.collect(), [width, height]))
 }
 
 #[cfg(not(feature = "png"))]

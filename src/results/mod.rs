@@ -36,7 +36,7 @@ pub use record::{
     Accuracy, ChannelAccuracy, Counts, Energy, Jump, Loads, Quantity, RankChange, Record,
     RowChange, Simulation, Status, Warning,
 };
-pub use run::{Column, Component, Entity, Kind, Requested, Run, Sequence};
+pub use run::{Column, Component, Entity, Kind, Requested, Run, Sequence, Switched};
 pub use seconds::Seconds;
 pub use units::{Units, component_unit};
 

@@ -558,3 +558,64 @@ fn a_dataset_is_drawn_whatever_forces_it_has() {
         assert!(picture.is_file());
     }
 }
+
+#[test]
+fn a_dataset_without_an_end_stands_still_and_is_told_how_it_moves() {
+    let model = scratch("animate_still", "m.adm", PENDULUM);
+    let page = model.with_extension("html");
+    let said = |options: &[&str]| {
+        let done = cognate(&[&["animate", path(&model), "-o", path(&page)], options].concat());
+        assert_eq!(done.code, 0, "{}", done.err);
+        done.err
+    };
+    let still = said(&[]);
+    assert!(
+        still.contains("nothing moves") && still.contains("--end 2"),
+        "{still}"
+    );
+    assert!(!said(&["--end", "0.1", "--steps", "4"]).contains("nothing moves"));
+}
+
+#[cfg(feature = "gif")]
+#[test]
+fn a_film_repeats_takes_the_time_of_its_run_and_shows_the_motion() {
+    let model = scratch("animate_gif", "m.adm", PENDULUM);
+    let film = model.with_extension("gif");
+    let run = ["animate", path(&model), "--end", "2", "--steps", "100"];
+    let done = cognate(&[&run[..], &["-o", path(&film), "--width", "300"]].concat());
+    assert_eq!(done.code, 0, "{}", done.err);
+    let bytes = std::fs::read(&film).unwrap();
+    assert!(bytes.len() < 400_000, "{}", bytes.len());
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::Indexed);
+    let mut decoder = options.read_info(&bytes[..]).unwrap();
+    assert_eq!(decoder.width(), 300);
+    assert!(matches!(decoder.repeat(), gif::Repeat::Infinite));
+    let size = usize::from(decoder.width()) * usize::from(decoder.height());
+    let (mut hundredths, mut changed, mut n) = (0, 0, 0);
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        let stays = frame.transparent.unwrap();
+        let own = frame.buffer.iter().filter(|c| **c != stays).count();
+        // the first is whole, later ones are what has changed
+        assert!(
+            if n == 0 { own == size } else { own < size / 2 },
+            "{n}: {own}"
+        );
+        changed += usize::from(n > 0 && own > 50);
+        hundredths += usize::from(frame.delay);
+        n += 1;
+    }
+    assert!((hundredths as f64 - 200.0).abs() < 10.0, "{hundredths}");
+    assert!(n > 30 && changed > n / 2, "{changed} of {n}");
+    // what is for films says so where there is none
+    let page = model.with_extension("html");
+    let done = cognate(&[&run[..], &["-o", path(&page), "--width", "300"]].concat());
+    assert!(done.code == 2 && done.err.contains(".gif"), "{}", done.err);
+    let other = model.with_extension("avi");
+    let done = cognate(&[&run[..], &["-o", path(&other)]].concat());
+    assert!(
+        done.code == 2 && done.err.contains(".html, .gif and .glb"),
+        "{}",
+        done.err
+    );
+}

@@ -35,4 +35,5 @@ mod results;
 mod runs;
 mod sweep;
 mod threads;
+mod viewer;
 mod written;

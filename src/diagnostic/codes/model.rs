@@ -615,6 +615,16 @@ the dataset places the parts.
     JOINT/1, HOOKE, I=12, J=21: turn MARKER/12 about its z until x of I is square to y of J",
     },
     Code {
+        name: "pinion_on_other_side",
+        summary: "a RACKPIN whose pinion lies on the other side of the rack than PD says",
+        explanation: "\
+J is the rack: it moves along z of J, and x of J is the axis of the pinion. A positive PD puts the centre of the pinion on the +y side
+of J, a negative one on the -y side. With the other sign the rack moves against the rim of its pinion. Nothing is said where the
+origin of I is hardly off the rack's line.
+
+    JOINT/5, RACKPIN, I=22, J=51, PD=-60      the pinion lies on the -y side of MARKER/51",
+    },
+    Code {
         name: "open_ends",
         summary: "a CLOSED curve whose ends differ",
         explanation: "\

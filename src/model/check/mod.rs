@@ -90,6 +90,10 @@ pub const RULES: &[Rule] = &[
     ("forces have data", forces::forces_have_data),
     ("contacts have their law", contacts::contacts_have_their_law),
     ("axes are aligned", alignment::axes_are_aligned),
+    (
+        "pinions lie on their side",
+        alignment::pinions_lie_on_their_side,
+    ),
     ("requests ask something", output::requests_ask_something),
     ("forces act where asked", between::forces_act_where_asked),
     (

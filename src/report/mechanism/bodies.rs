@@ -5,12 +5,15 @@ use crate::model::{ElementId, ElementKind, Model, geometry};
 use crate::space::{Frame, Vec3};
 use std::collections::BTreeMap;
 
+/// Name of ground where the dataset gives none.
+const GROUND: &str = "ground";
+
 /// A body that is drawn.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// the part or point mass; ground too
     pub id: ElementId,
-    /// its name in the dataset, or `PART_2`
+    /// its name in the dataset, or `PART_2`; `ground` of ground without a name
     pub name: String,
     /// whether it is ground
     pub is_ground: bool,
@@ -63,7 +66,10 @@ impl Bodies {
             index.insert(id, this.all.len());
             this.all.push(Body {
                 id,
-                name: name_of(part.place.name.as_deref(), id),
+                name: match (&part.place.name, is_ground) {
+                    (None, true) => GROUND.to_owned(),
+                    (name, _) => name_of(name.as_deref(), id),
+                },
                 is_ground,
                 colour,
                 placed: if is_ground { Frame::identity() } else { placed },

@@ -114,11 +114,11 @@ pub fn base64(bytes: &[u8]) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     /// Reads a column back, as the page does.
-    fn read(column: &Value, bytes: &[u8], n: usize) -> Vec<f64> {
+    pub(in super::super) fn read(column: &Value, bytes: &[u8], n: usize) -> Vec<f64> {
         let mut at = column[0].as_u64().unwrap() as usize;
         let (quantum, order) = (column[1].as_f64().unwrap(), column[2].as_u64().unwrap());
         let (mut before, mut slope) = (0.0, 0.0);
