@@ -50,6 +50,8 @@ function fail(error) {
     ? 'This browser cannot unpack the page: Chrome 80, Firefox 113, Safari 16.4 and later ones can.'
     : 'Reload the page. If that does not help, another browser may show it, and cognate draw writes pictures without one.';
   box.append(advice);
+  // what can be seen behind it may still be of use
+  box.onclick = () => (box.hidden = true);
 }
 // an event without an error is a remark of the browser
 window.addEventListener('error', (event) => event.error && fail(event.error));
@@ -227,7 +229,7 @@ async function main() {
     });
     button.textContent = 'Stop film';
     button.classList.add('on');
-    play();
+    if (!state.playing) play();
   }
   function endFilm() {
     state.film?.end();

@@ -9,7 +9,7 @@ use super::drawing::{Drawing, Names, Wanted, drawing};
 use super::{Pictured, View, drawing_svg};
 use crate::diagnostic::Diagnostic;
 use crate::report::picture;
-use crate::results::digits_of_six;
+use crate::scalar::Scalar;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use std::collections::HashMap;
 
@@ -104,7 +104,8 @@ impl<'a> Film<'a> {
             ..self.drawn(k)
         };
         let text = drawing_svg::svg(&drawing, self.width, &self.wanted.unit);
-        let time = digits_of_six(self.pictured.track.times[self.rows[k]]);
+        let times = &self.pictured.track.times;
+        let time = written(times[self.rows[k]], span(times));
         let clock = format!(
             "<text x=\"12\" y=\"20\" fill=\"#66707c\">{time} {}</text>\n</svg>",
             self.time
@@ -157,6 +158,20 @@ impl<'a> Film<'a> {
         }
         Ok(found)
     }
+}
+
+/// Returns the time from the first row to the last.
+fn span(times: &[f64]) -> f64 {
+    times.last().copied().unwrap_or(0.0) - times.first().copied().unwrap_or(0.0)
+}
+
+/// Writes a time with as many decimals as show a hundredth of the span of all times.
+fn written(time: f64, span: f64) -> String {
+    let decimals = match span > 0.0 {
+        true => (2.0 - Scalar::log10(span).floor()).clamp(0.0, 12.0),
+        false => 3.0,
+    };
+    format!("{time:.*}", decimals as usize)
 }
 
 fn failed(why: impl std::fmt::Display) -> Diagnostic {
@@ -319,6 +334,14 @@ mod tests {
             let t = 2.0 * k as f64 / (rows.len() - 1) as f64;
             assert!((uneven[*row] - t).abs() < 4e-3, "{k}");
         }
+    }
+
+    #[test]
+    fn the_time_on_a_picture_has_the_same_decimals_throughout() {
+        assert_eq!(written(1.0 / 3.0, 1.0), "0.33");
+        assert_eq!(written(2.0, 20.0), "2.0");
+        assert_eq!(written(1e-3, 4e-3), "0.00100");
+        assert_eq!(written(1234.5, 5000.0), "1234");
     }
 
     #[test]

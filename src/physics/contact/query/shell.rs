@@ -1,8 +1,8 @@
 //! Shells that are not what their convex hull is: the distance of their surfaces.
 //!
 //! ```text
-//! d = min over triangles of the distance to the other solid, or to its triangles      (gjk)
-//! w(p) = Σ Ω / 4π                       Ω: solid angle of a triangle seen from p; |w| > ½: p is inside
+//! d = min over triangles of the distance to the other solid, or to its triangles
+//! w(p) = Σ Ω / 4π        Ω: solid angle of a triangle seen from p; |w| > ½: p is inside
 //! ```
 //!
 //! Triangles whose bounding spheres are farther than the least distance so far are not looked at.
