@@ -145,7 +145,7 @@ async function main() {
     if (now - since < 1000) return;
     if (since) state.rate = (1000 * shown) / (now - since);
     if (since && state.rate < SLOW) stage.lighten();
-    byId('rate').textContent = since ? `${Math.round(state.rate)} pictures/s` : '';
+    byId('rate').textContent = since ? `${state.rate.toFixed(state.rate < 10 ? 1 : 0)} pictures/s` : '';
     [shown, since] = [0, now];
   }
   function frame(now) {
