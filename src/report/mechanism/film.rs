@@ -366,20 +366,20 @@ mod tests {
         let mut found: HashMap<[u8; 3], usize> = HashMap::from([(white, 100_000)]);
         found.extend((0..40_u8).flat_map(|r| (0..40_u8).map(move |g| ([6 * r, 6 * g, 90], 3))));
         let mut palette = Palette::new(&found);
-        assert_eq!(
-            palette.colours[usize::from(palette.known.len())..].len(),
-            COLOURS
-        );
+        assert_eq!(palette.colours.len(), COLOURS);
         let k = palette.index(white);
         assert_eq!(palette.colours[usize::from(k)], white);
+        let (mut sum, mut worst) = (0.0, 0);
         for colour in found.keys() {
             let k = palette.index(*colour);
-            let off = palette.colours[usize::from(k)]
-                .iter()
-                .zip(colour)
-                .map(|(a, b)| a.abs_diff(*b))
-                .max();
-            assert!(off < Some(24), "{colour:?} {off:?}");
+            let near = palette.colours[usize::from(k)];
+            let off = near.iter().zip(colour).map(|(a, b)| a.abs_diff(*b)).max();
+            let off = off.unwrap_or(0);
+            (sum, worst) = (sum + f64::from(off), worst.max(off));
         }
+        // 223 colours in a square grid would be 5 off in the mean, and 8 at most: twice the mean,
+        // and an eighth of the range at the edge
+        let mean = sum / found.len() as f64;
+        assert!(mean < 10.0 && worst < 32, "{mean} {worst}");
     }
 }
