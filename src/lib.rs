@@ -236,7 +236,7 @@ struct Readme;
 pub mod clock;
 pub mod diagnostic;
 #[cfg(feature = "solver")]
-mod disk;
+pub mod disk;
 #[cfg(feature = "solver")]
 pub mod encoding;
 pub mod scalar;

@@ -1,12 +1,15 @@
 //! `cognate animate`: a run as a page that moves, or as an animated `.glb` file.
 
 use super::moved::{Dimensions, Moved, Source, has_ending, pictured};
+use super::recorded;
+use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, interrupt, remark, run};
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use cognate::model::Model;
 use cognate::report::mechanism::page::{Shown, page};
 use cognate::report::mechanism::{Bodies, Pictured, Track, glb};
-use cognate::results::{self, Run};
+use cognate::results::Run;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -27,6 +30,8 @@ pub struct Args {
     /// page of the name of the run, here
     #[arg(short = 'o', long = "out", value_name = "FILE")]
     out: Vec<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     /// A further run of the same mechanism, shown pale over the first (.res, .parquet, .json, .gra)
     #[arg(long, value_name = "RUN")]
     over: Option<PathBuf>,
@@ -50,19 +55,23 @@ pub fn run(args: &Args) -> Outcome {
     interrupt::install();
     let known = |file: &PathBuf| has_ending(file, "glb") || has_ending(file, "html");
     if let Some(wrong) = args.out.iter().find(|file| !known(file)) {
-        let what = format!("{}: pictures that move are .html and .glb", wrong.display());
+        let what = format!(
+            "{}: pictures that move are .html and .glb",
+            disk::text(&wrong)
+        );
         return Err(Failure::usage(what));
     }
+    args.writing.check_beside(&args.source.file, &args.out)?;
     let is_solved = run::has_commands(&args.source.file) || has_ending(&args.source.file, "adm");
     let Moved {
         model,
         run,
         folders,
     } = args.source.get()?;
-    let over = args.over.as_deref().map(results::read).transpose()?;
+    let over = args.over.as_deref().map(recorded::read).transpose()?;
     let mut out = args.out.clone();
     if out.is_empty() {
-        out.push(PathBuf::from(format!("{}.html", run.name)));
+        out.push(disk::path(format!("{}.html", run.name)));
     }
     let pictured = args
         .dimensions
@@ -74,11 +83,11 @@ pub fn run(args: &Args) -> Outcome {
     };
     for file in &out {
         if has_ending(file, "glb") {
-            results::write_bytes(file, &glb::glb(&pictured))?;
+            args.writing.bytes(file, &glb::glb(&pictured))?;
         } else {
-            results::write_text(file, &page_of(&model, &pictured, &run, over.as_ref())?)?;
+            (args.writing).text(file, &page_of(&model, &pictured, &run, over.as_ref())?)?;
         }
-        remark(file.display());
+        remark(disk::text(&file));
     }
     if args.open {
         let pages = out.iter().filter(|file| has_ending(file, "html"));
@@ -158,7 +167,7 @@ pub fn open(file: &Path) {
     if !opened {
         remark(format!(
             "no browser was found; open {} in one",
-            file.display()
+            disk::text(&file)
         ));
     }
 }

@@ -4,6 +4,7 @@
 use super::{Failure, limit};
 use cognate::analysis::session::Options;
 use cognate::dataset::command::SimulationKind;
+use cognate::disk;
 use cognate::model::ElementKind;
 use std::path::Path;
 
@@ -102,7 +103,7 @@ impl SpanArgs {
         };
         Err(Failure::usage(format!(
             "{name} is for a dataset without command file; {} says itself what is simulated",
-            file.display()
+            disk::text(&file)
         )))
     }
 }

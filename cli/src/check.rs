@@ -7,6 +7,7 @@ use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::dataset::command::{Command, Script, Simulate};
 use cognate::dataset::{self, Reading};
 use cognate::diagnostic::{Cause, Diagnostic, Error, Severity};
+use cognate::disk;
 use cognate::model::{ElementKind, Model};
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -97,7 +98,7 @@ fn set_up(reading: &Reading, dataset: &Path, sources: &mut Sources) -> (Model, V
         Err(failure) => {
             let file = dataset.with_extension("toml");
             if let Ok(text) = std::fs::read_to_string(&file) {
-                sources.add(file.display().to_string(), text);
+                sources.add(disk::text(&file), text);
             }
             (reading.model.clone(), failure.diagnostics)
         }
@@ -210,7 +211,7 @@ fn check_script(
             continue;
         };
         all.extend(errors.into_iter().map(|d| Diagnostic {
-            file: Some(file.display().to_string()),
+            file: Some(disk::text(&file)),
             line: step.line,
             column: 1,
             ..d

@@ -1,19 +1,20 @@
 //! `cognate configuration`: the configuration of a run at some time as a dataset that begins there.
 
 use super::arguments::{IntegrationArgs, KindName, SpanArgs, UnsolvedArgs};
-use super::convert::same_file;
 use super::moved::has_ending;
 use super::recorded::{model_file, record_of};
 use super::run::{self, Single};
 use super::setup::Asked;
+use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, complain_in_files, interrupt, remark};
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::dataset;
 use cognate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use cognate::diagnostic::{Cause, Diagnostic};
+use cognate::disk;
 use cognate::model::{ElementId, ElementKind, Model};
-use cognate::results::{self, Status, digits_of_six};
+use cognate::results::{Status, digits_of_six};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -43,6 +44,8 @@ pub struct Args {
     /// Write the commands that are left to this file, with ends that count from there
     #[arg(long, value_name = "FILE.acf")]
     commands: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     /// Dataset or command file of the results, where it is not the one that their record names
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
@@ -66,12 +69,6 @@ pub fn run(args: &Args) -> Outcome {
         (true, model) => (args.file.clone(), model.as_deref()),
         (false, model) => (model_file(&args.file, model.as_deref())?, None),
     };
-    let outputs = [Some(&args.out), args.commands.as_ref()];
-    let is_input = |out: &&PathBuf| same_file(out, &file) || same_file(out, &args.file);
-    if outputs.into_iter().flatten().any(|out| is_input(&out)) {
-        let what = "the output is the input, which is never overwritten";
-        return Err(Failure::usage(what));
-    }
     let recorded = record_of(&args.file).filter(|_| !is_model);
     let acting = recorded.as_ref().and_then(loads_of_record);
     let asked = match &acting {
@@ -103,6 +100,8 @@ pub fn run(args: &Args) -> Outcome {
             asked,
         )?,
     };
+    disk::note_input(&args.file);
+    (args.writing).check([&args.out].into_iter().chain(&args.commands))?;
     let options = args.integration.given_to(Options::default());
     let mut options = args.unsolved.given_to(options);
     // a run is gone through as it was solved
@@ -237,9 +236,9 @@ fn write(args: &Args, session: &Session, left: &[Step]) -> Outcome {
             ))
         });
     }
-    results::write_text(&args.out, &text)?;
+    args.writing.text(&args.out, &text)?;
     let at = digits_of_six(beginning.time);
-    let out = args.out.display();
+    let out = disk::text(&args.out);
     remark(format!("{out} begins at time 0, which is {at} of the run"));
     for change in &beginning.changes {
         remark(change);
@@ -249,10 +248,10 @@ fn write(args: &Args, session: &Session, left: &[Step]) -> Outcome {
     match &args.commands {
         Some(file) => {
             let text = commands(&args.out, model, left, beginning.time);
-            results::write_text(file, &text)?;
+            args.writing.text(file, &text)?;
             remark(format!(
                 "{} holds the commands that are left",
-                file.display()
+                disk::text(&file)
             ));
         }
         None if !untold(model).is_empty() => {

@@ -1,9 +1,11 @@
 //! `cognate convert`: results from one format into another.
 
 use super::output::StyleArgs;
-use super::{Exit, Failure, Outcome, remark};
-use cognate::results::{self, Run};
-use std::path::{Path, PathBuf};
+use super::writing::WritingArgs;
+use super::{Exit, Failure, Outcome, recorded, remark};
+use cognate::disk;
+use cognate::results::Run;
+use std::path::PathBuf;
 
 /// Convert results from one format into another
 ///
@@ -29,6 +31,8 @@ pub struct Args {
     sequences: Vec<String>,
     #[command(flatten)]
     style: StyleArgs,
+    #[command(flatten)]
+    writing: WritingArgs,
 }
 
 /// Converts results from one file into another.
@@ -36,27 +40,18 @@ pub struct Args {
 /// # Errors
 /// When a file cannot be read or written, or has no such column or sequence.
 pub fn run(args: &Args) -> Outcome {
-    if same_file(&args.input, &args.output) {
-        return Err(Failure::usage(
-            "the output is the input, which is never overwritten",
-        ));
-    }
-    let mut run = results::read(&args.input)?;
+    args.writing.check_beside(&args.input, [&args.output])?;
+    let mut run = recorded::read(&args.input)?;
     select_columns(&mut run, &args.columns)?;
     select_sequences(&mut run, &args.sequences)?;
-    results::write(&run, &args.output, args.style.style())?;
+    args.writing.run(&run, &args.output, args.style.style())?;
     remark(format!(
         "{} columns, {} rows in {}",
         run.table_columns().len(),
         run.table_rows().count(),
-        args.output.display()
+        disk::text(&args.output)
     ));
     Ok(Exit::Done)
-}
-
-/// Returns whether two names are of one file that exists.
-pub fn same_file(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 /// Keeps time and the named columns of the table; `.res` keeps all, as its elements refer to them.

@@ -1,8 +1,10 @@
 //! `cognate draw`: one configuration of a model as a picture.
 
 use super::moved::{Dimensions, Moved, Source, pictured};
+use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, interrupt, remark};
 use cognate::analysis::session::Session;
+use cognate::disk;
 use cognate::model::ElementId;
 use cognate::report::mechanism::drawing::{Names, SymbolKind, Wanted, drawing};
 use cognate::report::mechanism::{Pictured, View, drawing_svg};
@@ -33,6 +35,8 @@ pub struct Args {
     /// File to write: .svg, .png or .pdf; without it NAME_drawing.svg, here
     #[arg(short = 'o', long = "out", value_name = "FILE")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     /// Symbols that are drawn
     #[arg(long, value_enum, default_value = "joints")]
     symbols: SymbolsArg,
@@ -108,6 +112,7 @@ enum From {
 /// written.
 pub fn run(args: &Args) -> Outcome {
     interrupt::install();
+    (args.writing).check_beside(&args.source.file, &args.out)?;
     let Moved {
         model,
         run,
@@ -124,7 +129,7 @@ pub fn run(args: &Args) -> Outcome {
         .added_to(pictured(&model, &run, &folders)?)?;
     let out = args.out.clone();
     // NAME.svg is the picture of the requests of a run
-    let out = out.unwrap_or_else(|| PathBuf::from(format!("{}_drawing.svg", run.name)));
+    let out = out.unwrap_or_else(|| disk::path(format!("{}_drawing.svg", run.name)));
     let times = &pictured.track.times;
     let last = times.len() - 1;
     let row = match args.at {
@@ -145,7 +150,7 @@ pub fn run(args: &Args) -> Outcome {
         view: view(args.from, &pictured.view),
         ..Wanted::at_row(row, &run.units.length)
     };
-    write(&pictured, &wanted, args.width, &run, &out)?;
+    write(&pictured, &wanted, args.width, &run, (&out, args.writing))?;
     Ok(Exit::Done)
 }
 
@@ -157,7 +162,13 @@ pub fn draw_at(session: &Session, at: f64, file: &Path) -> Result<(), Failure> {
     let run = &session.run;
     let pictured = pictured(&session.model, run, &session.folders)?;
     let wanted = Wanted::at_row(nearest(&pictured.track.times, at), &run.units.length);
-    write(&pictured, &wanted, WIDTH, run, file)
+    write(
+        &pictured,
+        &wanted,
+        WIDTH,
+        run,
+        (file, WritingArgs::default()),
+    )
 }
 
 /// Draws a configuration in which some elements stand out.
@@ -167,7 +178,7 @@ pub fn draw_at(session: &Session, at: f64, file: &Path) -> Result<(), Failure> {
 pub fn draw_standing_out(
     moved: &Moved,
     highlighted: BTreeSet<ElementId>,
-    file: &Path,
+    (file, writing): (&Path, WritingArgs),
 ) -> Result<(), Failure> {
     let Moved {
         model,
@@ -181,7 +192,7 @@ pub fn draw_standing_out(
         forces: false,
         ..Wanted::at_row(pictured.track.times.len() - 1, &run.units.length)
     };
-    write(&pictured, &wanted, WIDTH, run, file)
+    write(&pictured, &wanted, WIDTH, run, (file, writing))
 }
 
 /// Writes a drawing.
@@ -190,16 +201,16 @@ fn write(
     wanted: &Wanted,
     width: u32,
     run: &Run,
-    file: &Path,
+    (file, writing): (&Path, WritingArgs),
 ) -> Result<(), Failure> {
     if PictureFormat::of(file).is_none() {
-        let what = format!("{}: drawings are .svg, .png and .pdf", file.display());
+        let what = format!("{}: drawings are .svg, .png and .pdf", disk::text(&file));
         return Err(Failure::usage(what));
     }
     let width = f64::from(width.clamp(200, 8000));
     let text = drawing_svg::svg(&drawing(pictured, wanted), width, &run.units.length);
-    picture::write(&text, file)?;
-    remark(file.display());
+    writing.bytes(file, &picture::bytes(&text, file)?)?;
+    remark(disk::text(&file));
     Ok(())
 }
 

@@ -2,11 +2,12 @@
 //! dataset with another name of an element, or without it.
 
 use super::assembly;
-use super::convert::same_file;
 use super::table::Table;
+use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, complain_in_files, remark, run, say, width};
 use cognate::dataset::{self, Dataset, Reading, manual};
 use cognate::diagnostic::{Diagnostic, Severity};
+use cognate::disk;
 use cognate::model::{ElementId, ElementKind, Model};
 use cognate::results;
 use serde_json::json;
@@ -47,6 +48,8 @@ pub struct Args {
     /// Dataset to write after --rename and --delete
     #[arg(short = 'o', long = "out", value_name = "FILE.adm")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     /// Print the list as JSON
     #[arg(long)]
     json: bool,
@@ -71,10 +74,7 @@ pub fn run(args: &Args) -> Outcome {
         return Err(Failure::usage(what));
     }
     if let Some(out) = &args.out {
-        if same_file(out, &args.model) {
-            let what = "the output is the input, which is never overwritten";
-            return Err(Failure::usage(what));
-        }
+        args.writing.check([out])?;
         for (element, name) in &args.rename {
             let id = reading.model.find_element(element)?;
             reading = renamed(&reading, id, name)?;
@@ -87,8 +87,8 @@ pub fn run(args: &Args) -> Outcome {
         let deleted = deleted.collect::<Result<Vec<ElementId>, Diagnostic>>()?;
         reading = without(&reading, &deleted)?;
         let bytes = reading.dataset.source.encode(reading.dataset.to_text());
-        results::write_bytes(out, &bytes)?;
-        remark(out.display());
+        args.writing.bytes(out, &bytes)?;
+        remark(disk::text(&out));
         let is_error = |d: &&Diagnostic| d.severity == Severity::Error;
         let mistakes: Vec<Diagnostic> =
             (reading.diagnostics.iter().filter(is_error).cloned()).collect();

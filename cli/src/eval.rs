@@ -2,6 +2,7 @@
 
 use super::formula::{Formula, Setting, derivative_names, give, times};
 use super::render::Sources;
+use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, anatomy, complain, plot, say};
 use cognate::diagnostic::Diagnostic;
 use cognate::expr::Profile;
@@ -64,6 +65,8 @@ pub struct Args {
     /// --json, both
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -217,7 +220,7 @@ fn evaluate(args: &Args, text: &str) -> Outcome {
             }
             .into(),
         );
-        let written = plot::write_one(&picture, file)?;
+        let written = plot::write_one(&picture, file, args.writing)?;
         if !args.json {
             return Ok(written);
         }

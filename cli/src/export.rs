@@ -6,12 +6,13 @@ use super::configuration::commands;
 use super::run::{self, Single};
 use super::setup::{self, Asked, Setup};
 use super::verify::before_simulation;
+use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, remark};
 use cognate::dataset;
 use cognate::dataset::command::{Command, Step};
 use cognate::diagnostic::{Diagnostic, Severity};
+use cognate::disk;
 use cognate::model::{ElementId, ElementKind, Model, SettingsStatement};
-use cognate::results;
 use std::path::PathBuf;
 
 /// Write a model as it stands, with chosen loads, as a dataset and a command file
@@ -41,9 +42,8 @@ pub struct Args {
     loads: Vec<String>,
     #[command(flatten)]
     span: SpanArgs,
-    /// Replace files of these names, but not the model itself
-    #[arg(long)]
-    overwrite: bool,
+    #[command(flatten)]
+    writing: WritingArgs,
 }
 
 /// Writes the dataset and the command file.
@@ -68,8 +68,8 @@ pub fn run(args: &Args) -> Outcome {
         .clone()
         .unwrap_or_else(|| format!("{}_export", job.base));
     let folder = args.out.clone().unwrap_or_default();
-    let files = ["adm", "acf"].map(|ending| folder.join(format!("{name}.{ending}")));
-    refuse_overwriting(args, &files)?;
+    let files = ["adm", "acf"].map(|ending| folder.join(disk::path(format!("{name}.{ending}"))));
+    args.writing.check(&files)?;
     let is_simulation = |s: &Step| matches!(s.command, Command::Simulate(_));
     let first = job
         .steps
@@ -95,15 +95,20 @@ pub fn run(args: &Args) -> Outcome {
         });
     }
     std::fs::create_dir_all(&folder).map_err(|e| {
-        let what = format!("{}: {e}", folder.display());
+        let what = format!("{}: {e}", disk::text(&folder));
         Diagnostic::error("file_unwritable", what)
     })?;
-    results::write_text(&files[0], &text)?;
-    results::write_text(&files[1], &commands(&files[0], &model, &left, 0.0))?;
+    args.writing.text(&files[0], &text)?;
+    let commands = commands(&files[0], &model, &left, 0.0);
+    args.writing.text(&files[1], &commands)?;
     if let Some(loads) = &loads {
         remark(setup::loads_acting(loads));
     }
-    remark(format!("{} and {}", files[0].display(), files[1].display()));
+    remark(format!(
+        "{} and {}",
+        disk::text(&files[0]),
+        disk::text(&files[1])
+    ));
     if left.is_empty() {
         remark(match is_command {
             true => "the commands hold no simulation",
@@ -121,30 +126,6 @@ impl Args {
             span: self.span,
         }
     }
-}
-
-/// Refuses to write over the model, and over other files without leave.
-fn refuse_overwriting(args: &Args, files: &[PathBuf; 2]) -> Result<(), Failure> {
-    let dataset = setup::dataset_of(&args.model)?;
-    for file in files {
-        let is_model = [&args.model, &dataset]
-            .into_iter()
-            .any(|input| super::convert::same_file(input, file));
-        if is_model {
-            let what = format!(
-                "{} is the model, which is never overwritten",
-                file.display()
-            );
-            return Err(Failure::usage(what + ": --name NAME names another"));
-        }
-        if file.exists() && !args.overwrite {
-            let what = format!("{} is there already", file.display());
-            return Err(Failure::usage(
-                what + ": --name NAME names another, --overwrite replaces it",
-            ));
-        }
-    }
-    Ok(())
 }
 
 /// Adds what the set-up says beside loads: the permitted error, and a file of results for whoever

@@ -1,8 +1,10 @@
 //! `cognate fmt`: a dataset in the style of Adams View, comments and order kept.
 
+use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, remark, say};
 use cognate::dataset::{self, Reading};
-use cognate::diagnostic::{Cause, Diagnostic, Severity};
+use cognate::diagnostic::{Diagnostic, Severity};
+use cognate::disk;
 use std::path::PathBuf;
 
 /// Write a dataset in the style of Adams View
@@ -25,6 +27,8 @@ pub struct Args {
     /// File to write; without it the text goes to standard output
     #[arg(short, long, value_name = "OUT", conflicts_with = "check")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
 }
 
 /// Formats a dataset.
@@ -48,7 +52,7 @@ pub fn run(args: &Args) -> Outcome {
     if args.check {
         let same = text == reading.dataset.to_text();
         if !same {
-            remark(format!("{} is not formatted", args.file.display()));
+            remark(format!("{} is not formatted", disk::text(&args.file)));
         }
         return Ok(if same { Exit::Done } else { Exit::CheckFailed });
     }
@@ -56,14 +60,8 @@ pub fn run(args: &Args) -> Outcome {
         say(&text);
         return Ok(Exit::Done);
     };
-    if super::convert::same_file(&args.file, output) {
-        return Err(Failure::usage(
-            "the output is the input, which is never overwritten",
-        ));
-    }
-    std::fs::write(output, reading.dataset.source.encode(&text)).map_err(|e| {
-        Diagnostic::error(Cause::FileUnwritable, format!("{}: {e}", output.display()))
-    })?;
+    let bytes = reading.dataset.source.encode(&text);
+    args.writing.bytes(output, &bytes)?;
     Ok(Exit::Done)
 }
 

@@ -3,6 +3,7 @@
 use super::setup::{self, Members, Ordinate, Setup, USER_DEFINED, edit};
 use super::{Exit, Failure, Outcome, remark, say};
 use cognate::diagnostic::{Diagnostic, near_names};
+use cognate::disk;
 use cognate::results::json;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -152,7 +153,7 @@ fn create(model: &Path, name: &str, members: &[String], groups: &[String]) -> Ou
     let mut table = Table::new();
     table.insert(key, Item::Value(edit::list(names)));
     let setup = edit::change(&setup, |document| put(document, "groups", name, table))?;
-    let file = setup.file.display();
+    let file = disk::text(&setup.file);
     remark(format!("the group {name} is in {file}"));
     Ok(Exit::Done)
 }
@@ -262,7 +263,7 @@ fn function(args: &FunctionArgs) -> Outcome {
     if let Some(group) = args.group.as_deref().filter(|g| *g != USER_DEFINED) {
         new = join(&new, group, &args.name)?;
     }
-    let file = new.file.display();
+    let file = disk::text(&new.file);
     remark(format!("the function {} is in {file}", args.name));
     Ok(Exit::Done)
 }

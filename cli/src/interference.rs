@@ -1,14 +1,16 @@
 //! `cognate interference`: how near solids come to each other during a run, and whether they
 //! overlap.
 
-use super::convert::same_file;
 use super::output::StyleArgs;
+use super::recorded;
 use super::recorded::model_of;
 use super::table::Table;
+use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, remark, say, width};
 use cognate::analysis::interference::{Interference, Pair, interference};
 use cognate::analysis::motion::Recorded;
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use cognate::model::{ElementId, Model};
 use cognate::physics::contact::query::separation::Gap;
 use cognate::report::mechanism::Overlap;
@@ -47,6 +49,8 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     style: StyleArgs,
+    #[command(flatten)]
+    writing: WritingArgs,
 }
 
 /// Reads `PART/2,GRAPHICS/3`, or two names.
@@ -62,12 +66,8 @@ fn pair(text: &str) -> Result<[String; 2], String> {
 /// # Errors
 /// When the results or their model cannot be read, or lack the motion of parts.
 pub fn run(args: &Args) -> Outcome {
-    let is_input = |out: &PathBuf| same_file(out, &args.results);
-    if args.out.as_ref().is_some_and(is_input) {
-        let what = "the output is the input, which is never overwritten";
-        return Err(Failure::usage(what));
-    }
-    let run = results::read(&args.results)?;
+    args.writing.check_beside(&args.results, &args.out)?;
+    let run = recorded::read(&args.results)?;
     let model = model_of(&args.results, args.model.as_deref())?;
     let recorded = Recorded::new(&run, &model);
     let folders = folders(args);
@@ -83,8 +83,13 @@ pub fn run(args: &Args) -> Outcome {
         remark(format!("{graphics} is not looked at: {why}"));
     }
     if let Some(out) = &args.out {
-        results::write(&over_time(&run, &model, &found), out, args.style.style())?;
-        remark(format!("{} pairs in {}", found.pairs.len(), out.display()));
+        let table = over_time(&run, &model, &found);
+        args.writing.run(&table, out, args.style.style())?;
+        remark(format!(
+            "{} pairs in {}",
+            found.pairs.len(),
+            disk::text(&out)
+        ));
     }
     match args.json {
         true => say(&results::json::text(&as_json(&run, &found))),

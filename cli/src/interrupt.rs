@@ -77,7 +77,8 @@ fn ask_to_stop() {
     if STOP.swap(true, Ordering::Relaxed) {
         std::process::exit(130);
     }
-    std::thread::spawn(end_unless_seen);
+    // where no thread can be had, only what looks by itself ends
+    let _ = std::thread::Builder::new().spawn(end_unless_seen);
 }
 
 /// Listens for Ctrl-C, and for SIGTERM and SIGHUP, but for one of these that whoever started this
@@ -87,10 +88,19 @@ fn listen_for_ends() {
     use signal_hook::consts::signal::{SIGHUP, SIGINT, SIGTERM};
     let ignored = ignored_signals();
     let heard = [SIGINT, SIGTERM, SIGHUP].into_iter();
-    let heard = heard.filter(|&signal| signal == SIGINT || ignored & (1 << (signal - 1)) == 0);
-    // where that is not possible they end the program, as before
-    if let Ok(mut signals) = signal_hook::iterator::Signals::new(heard) {
-        std::thread::spawn(move || signals.forever().for_each(|_| ask_to_stop()));
+    let heard = heard.filter(move |&signal| signal == SIGINT || ignored & (1 << (signal - 1)) == 0);
+    // where that is not possible, or no thread can be had, they end the program, as before
+    let (ready, is_ready) = std::sync::mpsc::channel();
+    let listen = move || {
+        let signals = signal_hook::iterator::Signals::new(heard);
+        // whoever waits is there until this comes
+        let _ = ready.send(());
+        if let Ok(mut signals) = signals {
+            signals.forever().for_each(|_| ask_to_stop());
+        }
+    };
+    if std::thread::Builder::new().spawn(listen).is_ok() {
+        let _ = is_ready.recv();
     }
 }
 

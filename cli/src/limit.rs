@@ -110,7 +110,12 @@ impl Guard {
             clock,
         };
         let watched = guard.clone();
-        std::thread::spawn(move || watched.watch());
+        let watch = move || watched.watch();
+        if std::thread::Builder::new().spawn(watch).is_err() {
+            remark(
+                "no thread can be had here: nothing watches the run, which ends early between its steps alone",
+            );
+        }
         guard
     }
 

@@ -1,13 +1,17 @@
 //! `cognate linear`: small motions of a model about a state, as eigenvalues and as a linear system.
 
 use super::arguments::UnsolvedArgs;
+use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, interrupt, modes, remark, run, say, summary, width};
 use cognate::analysis::linear::Wanted;
 use cognate::analysis::session::script::obey;
+use cognate::analysis::session::state;
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::watch::Watch;
+use cognate::dataset::command::{Command, Linear, Step};
 use cognate::diagnostic::{Cause, Diagnostic};
-use cognate::results::{self, Status, json};
+use cognate::disk;
+use cognate::results::{Status, json};
 use std::path::PathBuf;
 
 /// Linearize a model: eigenvalues, mode shapes, and the matrices A, B, C, D between its plant
@@ -36,6 +40,8 @@ pub struct Args {
     /// Folder that NAME_linear.json and NAME_linear.m are written to
     #[arg(short = 'o', long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     #[command(flatten)]
     unsolved: UnsolvedArgs,
     /// Print everything as JSON
@@ -106,15 +112,23 @@ pub fn run(args: &Args) -> Outcome {
     }
     session.linear = vec![(None, true, found)];
     if let Some(dir) = &args.out {
-        for (name, text) in files(&session) {
-            let path = dir.join(name);
+        let files = files(&session);
+        let files = files
+            .into_iter()
+            .map(|(name, text)| (dir.join(disk::path(name)), text));
+        let files: Vec<(PathBuf, String)> = files.collect();
+        args.writing.check(files.iter().map(|(path, _)| path))?;
+        for (path, text) in files {
             if let Some(folder) = path.parent() {
                 std::fs::create_dir_all(folder).map_err(|e| {
-                    Diagnostic::error(Cause::FileUnwritable, format!("{}: {e}", folder.display()))
+                    Diagnostic::error(
+                        Cause::FileUnwritable,
+                        format!("{}: {e}", disk::text(&folder)),
+                    )
                 })?;
             }
-            results::write_text(&path, &text)?;
-            remark(format!("wrote {}", path.display()));
+            args.writing.text(&path, &text)?;
+            remark(format!("wrote {}", disk::text(&path)));
         }
     }
     Ok(Exit::Done)
@@ -123,20 +137,9 @@ pub fn run(args: &Args) -> Outcome {
 /// Returns names and texts of the files of the linear systems that a session has found.
 pub fn files(session: &Session) -> Vec<(String, String)> {
     let mut files = Vec::new();
-    let mut own = 0;
-    for (file, matrices, found) in &session.linear {
-        let name = match file {
-            Some(file) if *file != session.run.name => file.clone(),
-            _ => {
-                own += 1;
-                let number = if own > 1 {
-                    own.to_string()
-                } else {
-                    String::new()
-                };
-                format!("{}_linear{number}", session.run.name)
-            }
-        };
+    let named = session.linear.iter().map(|(file, ..)| file.as_deref());
+    let names = names(&session.run.name, named);
+    for (name, (_, matrices, found)) in names.into_iter().zip(&session.linear) {
         let mut texts = vec![("json", json::text(&found.json()))];
         if *matrices {
             texts.push(("m", found.matlab()));
@@ -146,4 +149,50 @@ pub fn files(session: &Session) -> Vec<(String, String)> {
         }
     }
     files
+}
+
+/// Returns the names of the files of linear systems, without their endings: those that commands
+/// give, else that of the run with a number.
+fn names<'f>(run: &str, files: impl Iterator<Item = Option<&'f str>>) -> Vec<String> {
+    let mut own = 0;
+    files
+        .map(|file| match file {
+            Some(file) if file != run => file.to_owned(),
+            _ => {
+                own += 1;
+                let number = if own > 1 {
+                    own.to_string()
+                } else {
+                    String::new()
+                };
+                format!("{run}_linear{number}")
+            }
+        })
+        .collect()
+}
+
+/// Returns the names of the files that commands of a run ask for: linear systems, saved states.
+pub fn named_by(run: &str, steps: &[Step]) -> Vec<String> {
+    let linear = steps.iter().filter_map(|step| match &step.command {
+        Command::Linear(linear) => Some(linear),
+        _ => None,
+    });
+    let named = names(run, linear.clone().map(|linear| linear.file.as_deref()));
+    let matrices = |linear: &Linear| linear.state_matrices || !linear.eigensolution;
+    let endings = linear.map(|linear| {
+        if matrices(linear) {
+            &["json", "m"][..]
+        } else {
+            &["json"]
+        }
+    });
+    let files = named
+        .iter()
+        .zip(endings)
+        .flat_map(|(name, endings)| endings.iter().map(move |ending| format!("{name}.{ending}")));
+    let saved = steps.iter().filter_map(|step| match &step.command {
+        Command::Save(Some(name)) => Some(state::file_name(name)),
+        _ => None,
+    });
+    files.chain(saved).collect()
 }

@@ -8,6 +8,7 @@ use super::{Exit, Failure, Outcome, remark, say, width};
 use clap::ValueEnum;
 use cognate::analysis::session::Chosen;
 use cognate::diagnostic::{Diagnostic, near_names};
+use cognate::disk;
 use cognate::model::Model;
 use cognate::results::json;
 use serde_json::{Value, json};
@@ -152,7 +153,7 @@ fn create(model: &Path, name: &str, loads: &[String]) -> Outcome {
     let is_new = setup.case(name).is_none();
     let setup = edit::set_case(&setup, name, loads)?;
     let done = if is_new { "is in" } else { "is changed in" };
-    remark(format!("{name} {done} {}", setup.file.display()));
+    remark(format!("{name} {done} {}", disk::text(&setup.file)));
     Ok(Exit::Done)
 }
 
@@ -179,7 +180,10 @@ fn remove(model: &Path, names: &[String]) -> Outcome {
     }
     for name in names {
         setup = edit::remove(&setup, "cases", name)?;
-        remark(format!("{name} is removed from {}", setup.file.display()));
+        remark(format!(
+            "{name} is removed from {}",
+            disk::text(&setup.file)
+        ));
     }
     Ok(Exit::Done)
 }
@@ -223,7 +227,7 @@ fn drive(model: &Path, load: &str, function: Option<&str>) -> Outcome {
         Ok(_) => {
             remark(format!(
                 "{load} is given by {function} in {}",
-                after.file.display()
+                disk::text(&after.file)
             ));
             Ok(Exit::Done)
         }
@@ -335,7 +339,7 @@ fn list(file: &Path, as_json: bool) -> Outcome {
             json!({ "name": c.name.text, "loads": loads })
         };
         say(&json::text(&json!({
-            "file": setup.exists().then(|| setup.file.display().to_string()),
+            "file": setup.exists().then(|| disk::text(&setup.file)),
             "loads": all.iter().map(load).collect::<Vec<_>>(),
             "cases": setup.cases.iter().map(case).collect::<Vec<Value>>(),
             "chosen": names,

@@ -55,10 +55,13 @@ mod sweep;
 mod table;
 mod verify;
 mod width;
+mod writing;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use cognate::analysis::stack;
 use cognate::dataset::Dataset;
 use cognate::diagnostic::{Cause, Diagnostic, Error};
+use cognate::disk;
 use render::Sources;
 use std::io::Write;
 use std::process::ExitCode;
@@ -137,6 +140,15 @@ pub enum Exit {
 }
 
 impl Exit {
+    /// Returns the exit of a command that a mistake ends: one in the input, in the command, or a
+    /// file that cannot be written.
+    pub fn of(diagnostic: &Diagnostic) -> Self {
+        match diagnostic {
+            d if d.is(Cause::FileUnwritable) => Exit::Unwritable,
+            d if d.is_any(&[Cause::FileExists, Cause::IsInput]) => Exit::Usage,
+            _ => Exit::Input,
+        }
+    }
     /// Returns its number.
     pub fn code(self) -> u8 {
         match self {
@@ -169,12 +181,8 @@ pub struct Failure {
 impl From<Diagnostic> for Failure {
     /// A mistake in the input, or a file that cannot be written.
     fn from(diagnostic: Diagnostic) -> Self {
-        let exit = match diagnostic.is(Cause::FileUnwritable) {
-            true => Exit::Unwritable,
-            false => Exit::Input,
-        };
         Self {
-            exit,
+            exit: Exit::of(&diagnostic),
             diagnostics: vec![diagnostic],
             sources: Sources::default(),
         }
@@ -219,19 +227,17 @@ impl Failure {
 /// The result of a verb.
 pub type Outcome = Result<Exit, Failure>;
 
-/// Stack of the thread that does the work, in bytes; what is not used is not taken.
-const STACK_BYTES: usize = 256 << 20;
-
 /// Runs the command that the arguments of the process name.
 fn main() -> ExitCode {
     let cli = parsed();
+    disk::remember_inputs();
     if !matches!(cli.verb, Verb::Sweep(_)) {
         memory::serve_one_thread();
     }
     // the process ends where its work does: nobody waits until the stack is taken down
     let work = || -> Exit { std::process::exit(obey(&cli).code().into()) };
     let exit = std::thread::scope(|scope| {
-        let worker = std::thread::Builder::new().stack_size(STACK_BYTES);
+        let worker = std::thread::Builder::new().stack_size(stack::bytes(1));
         match worker.spawn_scoped(scope, work) {
             Ok(worker) => worker.join().unwrap_or(Exit::Bug),
             // a system that has no room for the stack has room for most models
@@ -307,7 +313,7 @@ fn obey(cli: &Cli) -> Exit {
 pub fn complain(diagnostics: &[Diagnostic], sources: &Sources) {
     let text = render::render(diagnostics, sources, render::colour_on_stderr());
     // a closed stream is no mistake
-    let _ = std::io::stderr().write_all(text.as_bytes());
+    let _ = std::io::stderr().write_all(&disk::bytes(&text));
 }
 
 /// Prints diagnostics about files on standard error, with their places.
@@ -317,7 +323,9 @@ pub fn complain_in_files(diagnostics: &[Diagnostic]) {
 
 /// Prints on standard error a remark about what was done.
 pub fn remark(message: impl std::fmt::Display) {
-    let _ = writeln!(std::io::stderr(), "{message}");
+    let line = format!("{message}\n");
+    // a closed stream is no mistake
+    let _ = std::io::stderr().write_all(&disk::bytes(&line));
 }
 
 /// Prints results on standard output. When the reader is gone (`| head`), the program ends quietly;
@@ -325,7 +333,7 @@ pub fn remark(message: impl std::fmt::Display) {
 /// [`Exit::Unwritable`].
 pub fn say(text: &str) {
     let mut out = std::io::stdout().lock();
-    let Err(e) = out.write_all(text.as_bytes()).and_then(|()| out.flush()) else {
+    let Err(e) = out.write_all(&disk::bytes(text)).and_then(|()| out.flush()) else {
         return;
     };
     if e.kind() == std::io::ErrorKind::BrokenPipe {

@@ -1,13 +1,15 @@
 //! `cognate motion`: the motion of markers and joints relative to a marker, after a run.
 
-use super::convert::same_file;
 use super::output::StyleArgs;
+use super::recorded;
 use super::recorded::model_of;
-use super::{Exit, Failure, Outcome, remark, say, summary, width};
+use super::writing::WritingArgs;
+use super::{Exit, Outcome, remark, say, summary, width};
 use cognate::analysis::motion::{MarkerMeasure, Recorded};
 use cognate::diagnostic::{Cause, Diagnostic};
+use cognate::disk;
 use cognate::model::{ElementId, ElementKind, Model};
-use cognate::results::{self, Component, Entity, Run};
+use cognate::results::{Component, Entity, Run};
 use std::path::PathBuf;
 
 /// Show the motion of markers or joints relative to a marker, from the results of a run
@@ -50,6 +52,8 @@ pub struct Args {
     out: Option<PathBuf>,
     #[command(flatten)]
     style: StyleArgs,
+    #[command(flatten)]
+    writing: WritingArgs,
 }
 
 /// A kind of motion.
@@ -137,18 +141,15 @@ fn marker(model: &Model, text: &str) -> Result<u32, Diagnostic> {
 /// part.
 pub fn run(args: &Args) -> Outcome {
     let written = args.out.as_ref();
-    if written.is_some_and(|out| same_file(out, &args.results)) {
-        let what = "the output is the input, which is never overwritten";
-        return Err(Failure::usage(what));
-    }
-    let run = results::read(&args.results)?;
+    args.writing.check_beside(&args.results, written)?;
+    let run = recorded::read(&args.results)?;
     let model = model_of(&args.results, args.model.as_deref())?;
     let group = group(args, &run, &model)?;
     match written {
         Some(out) => {
-            results::write(&group, out, args.style.style())?;
+            args.writing.run(&group, out, args.style.style())?;
             let n = group.columns.len() - 1;
-            remark(format!("{n} functions in {}", out.display()));
+            remark(format!("{n} functions in {}", disk::text(&out)));
         }
         None => {
             let n_rows = group.table_rows().count();

@@ -8,9 +8,10 @@ use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::dataset::surface::Surfaces;
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use cognate::model::{ElementKind, Family, Model};
 use cognate::report::mechanism::{Dimension, Pair, Pictured};
-use cognate::results::{self, Run, Status};
+use cognate::results::{Run, Status};
 use std::path::{Path, PathBuf};
 
 /// A model or a run, as the user names it.
@@ -87,7 +88,7 @@ impl Source {
             self.span.refuse_beside(&self.file)?;
         }
         if !is_dataset && !run::has_commands(&self.file) {
-            let run = results::read(&self.file)?;
+            let run = recorded::read(&self.file)?;
             let (file, model) = self.model_of(&run)?;
             let folders = [file.parent(), self.file.parent()];
             let folders = folders.into_iter().flatten().map(Path::to_path_buf);
@@ -127,7 +128,7 @@ impl Source {
             .map(Path::to_path_buf)
             .into_iter()
             .collect();
-        session.run.record.model = self.file.display().to_string();
+        session.run.record.model = disk::text(&self.file);
         let dataset = job.reading.dataset;
         let status = obey(
             &mut session,

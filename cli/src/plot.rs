@@ -1,14 +1,16 @@
 //! `cognate plot`: columns of results as a picture, in the terminal or as a file.
 
-use super::convert::same_file;
 use super::grouped;
 use super::moved::has_ending;
+use super::recorded;
 use super::recorded::add_measures;
 use super::response::responses;
 use super::setup::{self, Setup};
 use super::table::Table;
+use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, remark, render, run, say, width};
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use cognate::report::channels::{Channels, Shown, Source, channels};
 use cognate::report::terminal::{Style, terminal};
 use cognate::report::transform::{Statistics, statistics};
@@ -67,6 +69,8 @@ pub struct Args {
     /// Write a file instead of drawing in the terminal: .svg, .png or .pdf
     #[arg(long, short, value_name = "FILE", alias = "svg", conflicts_with_all = ["statistics", "list"])]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     /// Print ends, extremes and means of the columns instead
     #[arg(long)]
     statistics: bool,
@@ -161,12 +165,11 @@ pub fn run(args: &Args) -> Outcome {
         }
     }
     let plots = found.arranged(args.panels);
-    let inputs = args.over.iter().chain([&args.input]);
     match &args.out {
-        Some(file) if inputs.into_iter().any(|input| same_file(file, input)) => Err(
-            Failure::usage("the output is the input, which is never overwritten"),
-        ),
-        Some(file) => write(&plots, file),
+        Some(file) => {
+            args.writing.check([file])?;
+            write(&plots, file, args.writing)
+        }
         None => draw_all(plots),
     }
 }
@@ -192,7 +195,7 @@ fn setup_of(args: &Args) -> Result<Option<Setup>, Failure> {
     let model = is_model(&args.input).then(|| setup::of_model(&args.input));
     let setup = model.transpose()?;
     if setup.as_ref().is_some_and(|s| s.functions.is_empty()) {
-        let what = format!("{} has no functions to show", args.input.display());
+        let what = format!("{} has no functions to show", disk::text(&args.input));
         let d = Diagnostic::error("empty_plot", what);
         let advice = "cognate group function makes one; a model has results once it has been run";
         return Err(d.help(advice).into());
@@ -225,18 +228,18 @@ fn runs(args: &Args) -> Result<Vec<Source>, Diagnostic> {
     let files: Vec<&PathBuf> = [&args.input].into_iter().chain(&args.over).collect();
     let stem = |file: &Path| {
         let stem = file.file_stem().unwrap_or_default();
-        stem.to_string_lossy().into_owned()
+        disk::text(&stem)
     };
     let alike = |file: &Path| files.iter().filter(|f| stem(f) == stem(file)).count() > 1;
     (files.iter())
         .map(|file| {
             let folder = file.parent().filter(|_| alike(file));
             let folder = folder
-                .map(|f| format!("{}/", f.display()))
+                .map(|f| format!("{}/", disk::text(&f)))
                 .unwrap_or_default();
             Ok(Source {
                 label: folder + &stem(file),
-                run: results::read(file)?,
+                run: recorded::read(file)?,
             })
         })
         .collect()
@@ -323,9 +326,9 @@ fn statistics_as_json(curve: &Curve, found: Option<Statistics>) -> Value {
 ///
 /// # Errors
 /// When there is nothing to draw, or the file cannot be written.
-fn write(plots: &[Plot], file: &Path) -> Outcome {
-    picture::write(&svg::panels(plots)?, file)?;
-    remark(format!("plot in {}", file.display()));
+fn write(plots: &[Plot], file: &Path, writing: WritingArgs) -> Outcome {
+    writing.bytes(file, &picture::bytes(&svg::panels(plots)?, file)?)?;
+    remark(format!("plot in {}", disk::text(&file)));
     Ok(Exit::Done)
 }
 
@@ -333,8 +336,8 @@ fn write(plots: &[Plot], file: &Path) -> Outcome {
 ///
 /// # Errors
 /// When there is nothing to draw, or the file cannot be written.
-pub fn write_one(plot: &Plot, file: &Path) -> Outcome {
-    write(std::slice::from_ref(plot), file)
+pub fn write_one(plot: &Plot, file: &Path, writing: WritingArgs) -> Outcome {
+    write(std::slice::from_ref(plot), file, writing)
 }
 
 /// Draws plots below each other on standard output; an axis at the right becomes a plot of its own.

@@ -2,12 +2,13 @@
 //! markers are fixed otherwise now.
 
 use super::setup::Asked;
-use super::{Failure, run};
+use super::{Failure, complain_in_files, run};
 use cognate::analysis::motion::{MarkerMeasure, Recorded, marker_digest};
 use cognate::dataset::command::Command;
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use cognate::model::Model;
-use cognate::results::Run;
+use cognate::results::{self, Run};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -24,7 +25,7 @@ pub(super) fn model_of(results: &Path, given: Option<&Path>) -> Result<Model, Fa
     if expected.is_some_and(|digest| digest != marker_digest(&model)) {
         let what = format!(
             "the markers of {} are not those of the run: it has been changed since, or is another model",
-            file.display()
+            disk::text(&file)
         );
         let d = Diagnostic::error("other_model", what);
         return Err(d.help("--model FILE names the model of the run").into());
@@ -46,7 +47,7 @@ pub(super) fn model_file(results: &Path, given: Option<&Path>) -> Result<PathBuf
         (None, None) => namesake(results).ok_or_else(|| {
             let what = format!(
                 "{} has no record that names its model, nor a dataset of its name beside it",
-                results.display()
+                disk::text(&results)
             );
             let d = Diagnostic::error("no_model", what);
             d.help("--model FILE names it").into()
@@ -58,6 +59,16 @@ pub(super) fn model_file(results: &Path, given: Option<&Path>) -> Result<PathBuf
 fn namesake(results: &Path) -> Option<PathBuf> {
     let dataset = results.with_extension("adm");
     dataset.is_file().then_some(dataset)
+}
+
+/// Reads results; what is doubted about their file is said.
+///
+/// # Errors
+/// As [`results::read`].
+pub(super) fn read(file: &Path) -> Result<Run, Diagnostic> {
+    let run = results::read(file)?;
+    complain_in_files(&run.record.doubts);
+    Ok(run)
 }
 
 /// Reads the record beside results.

@@ -3,6 +3,7 @@
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use cognate::dataset::syntax::Source;
 use cognate::diagnostic::{Cause, Diagnostic, Severity, Subject};
+use cognate::disk;
 use std::io::IsTerminal;
 
 /// The texts that places refer to, by the name of their file; the name is empty for a text without
@@ -24,7 +25,7 @@ impl Sources {
         let mut sources = Self::default();
         for file in diagnostics.iter().filter_map(|d| d.file.as_deref()) {
             if sources.text(Some(file)).is_none()
-                && let Ok(bytes) = std::fs::read(file)
+                && let Ok(bytes) = std::fs::read(disk::path(file))
             {
                 sources.add(file, Source::from_bytes(None, &bytes).text);
             }

@@ -2,10 +2,12 @@
 
 use super::arguments::{SpanArgs, UnsolvedArgs};
 use super::run::{self, Single};
+use super::writing::{WritingArgs, remark_on_kept};
 use super::{Exit, Failure, Outcome, interrupt, limit, remark, say};
 use cognate::analysis::session::Options;
 use cognate::analysis::watch::Watch;
 use cognate::analysis::work_precision::{Question, Study, page, survey};
+use cognate::disk;
 use cognate::model::{Model, RequestKind};
 use cognate::results::json;
 use cognate::results::output_folder::OutputFolder;
@@ -44,6 +46,8 @@ pub struct Args {
     /// Folder that the report is written to
     #[arg(short = 'o', long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     #[command(flatten)]
     unsolved: UnsolvedArgs,
     /// Print the report as JSON
@@ -86,7 +90,9 @@ pub fn run(args: &Args) -> Outcome {
     let (model, dataset) = (job.reading.model, job.reading.dataset);
     let name = format!("{}_report", job.base);
     let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("."));
-    let folder = OutputFolder::open(&dir, &name)?;
+    let folder = OutputFolder::open(&dir, &name)?.with_leave(args.writing.leave(), false);
+    let names = ["csv", "html"].map(|ending| format!("{name}.{ending}"));
+    folder.check(&names)?;
     let parent = args.model.parent().map(Path::to_path_buf);
     let question = Question {
         name: job.base,
@@ -114,7 +120,7 @@ pub fn run(args: &Args) -> Outcome {
     } else {
         say(&study.text(&wanted));
         for file in files {
-            remark(file.display());
+            remark(disk::text(&file));
         }
     }
     Ok(if study.interrupted {
@@ -179,14 +185,10 @@ fn write(
     folder.put(&files)?;
     let mut record = study.json(wanted);
     record["read_seconds"] = read.into();
-    let record = json::with_files(record, folder.written());
+    let record = json::with_files(record, &folder);
     folder.put_record(&json::text(&record))?;
     for (was, is) in folder.kept() {
-        remark(format!(
-            "{} was not written by this program or has been changed: kept as {}",
-            was.display(),
-            is.display()
-        ));
+        remark_on_kept(was, is);
     }
     Ok(folder.files().to_vec())
 }

@@ -6,7 +6,7 @@ use super::limit::{Guard, simulations_to_the_end};
 use super::progress::Progress;
 use super::render::Sources;
 use super::setup::{self, Asked, Prepared, Setup};
-use super::{Exit, Failure, Outcome, interrupt, output, remark, say, summary};
+use super::{Exit, Failure, Outcome, interrupt, linear, output, remark, say, summary};
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::state::{self, Saved};
 use cognate::analysis::session::{Chosen, Options, Session};
@@ -15,6 +15,7 @@ use cognate::analysis::work_limit::ProcessClock;
 use cognate::dataset::command::{Command, Script, SimulationKind, Step};
 use cognate::dataset::{self, Dataset, Reading};
 use cognate::diagnostic::{Cause, Diagnostic, Error, Severity};
+use cognate::disk;
 use cognate::model::{ElementKind, Family, Model, SettingsStatement};
 use cognate::numeric::Stats;
 use cognate::results::format::Format;
@@ -162,8 +163,8 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     session.run.record.loads = job.loads;
     let doubts: Vec<_> = read.iter().chain(&about_mechanism).cloned().collect();
     note_doubts(&mut session, &doubts);
-    let folder = args.out.as_deref();
-    let tables = output::Tables::open(&args.output, folder, &mut session, clock)?;
+    let shown = !args.json && !args.quiet;
+    let tables = tables_of(args, &mut session, &steps, clock)?;
     guard.follow(&session, &tables);
 
     // solve
@@ -175,7 +176,6 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
 
     // write and report
     guard.done();
-    let shown = !args.json && !args.quiet;
     let is_nothing = failure.is_some() || status == Status::Interrupted;
     let is_refused = is_nothing && session.run.rows() == 0;
     let (written, record) = if is_refused {
@@ -195,7 +195,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     }
     if let Some(mut diagnostics) = failure {
         // a place without a file belongs to the commands
-        let commands = args.model.display().to_string();
+        let commands = disk::text(&args.model);
         for d in diagnostics
             .iter_mut()
             .filter(|d| is_command && d.file.is_none() && d.line > 0)
@@ -217,6 +217,25 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     Ok(exit(status))
 }
 
+/// Opens the tables of a run, where all of its files may be written.
+fn tables_of(
+    args: &Args,
+    session: &mut Session,
+    steps: &[Step],
+    clock: ProcessClock,
+) -> Result<output::Tables, Error> {
+    let name = session.run.name.clone();
+    let endings = [
+        Some("msg"),
+        (!args.json && !args.quiet).then_some("svg"),
+        args.output.animate.then_some("html"),
+    ];
+    let own = endings.into_iter().flatten();
+    let mut more = linear::named_by(&name, steps);
+    more.extend(own.map(|ending| format!("{name}.{ending}")));
+    output::Tables::open(&args.output, (args.out.as_deref(), &more), session, clock)
+}
+
 /// Opens the pages among files that were written.
 fn open_pages(written: &[PathBuf]) {
     let is_page = |file: &&PathBuf| super::moved::has_ending(file, "html");
@@ -231,7 +250,8 @@ fn job(args: &Args, is_command: bool) -> Result<Job, Failure> {
     };
     if is_command {
         args.span.refuse_beside(&args.model)?;
-        return script_with(&args.model, args.dataset.as_deref(), asked);
+        let (dataset, trusting) = (args.dataset.as_deref(), args.output.trust_paths);
+        return script_from(&args.model, dataset, asked, trusting);
     }
     let single = Single {
         model: &args.model,
@@ -377,7 +397,7 @@ fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session 
         session.was_read();
     }
     session.end_with_commands();
-    session.run.record.model = args.model.display().to_string();
+    session.run.record.model = disk::text(&args.model);
     let folder = args.model.parent().map(Path::to_path_buf);
     session.folders = args.out.clone().into_iter().chain(folder).collect();
     let title = Event::Title(session.run.title.clone());
@@ -527,8 +547,7 @@ fn single_simulation(args: &Single<'_>, setup: &Setup) -> Option<Vec<Step>> {
 }
 
 pub(super) fn stem(path: &Path) -> String {
-    path.file_stem()
-        .map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
+    path.file_stem().map_or_else(|| "run".into(), disk::text)
 }
 
 /// Reads a dataset, with the loads of the last choice.
@@ -590,12 +609,28 @@ pub(super) fn script_with(
     dataset: Option<&Path>,
     asked: Asked<'_>,
 ) -> Result<Job, Failure> {
+    script_from(path, dataset, asked, false)
+}
+
+/// Does the same; `trusting`: names of results may lead out of their folder.
+///
+/// # Errors
+/// As [`script`].
+fn script_from(
+    path: &Path,
+    dataset: Option<&Path>,
+    asked: Asked<'_>,
+    trusting: bool,
+) -> Result<Job, Failure> {
     let failed = |e: Error| Failure::in_files(Exit::Input, e.into());
     if path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("msg"))
     {
-        let script = Script::from_message_log(path).map_err(failed)?;
+        let mut script = Script::from_message_log(path).map_err(failed)?;
+        if !trusting {
+            script.keep_inside();
+        }
         let file = (dataset.map(Path::to_path_buf))
             .or_else(|| script.model_file())
             .unwrap_or_else(|| path.with_extension("adm"));
@@ -610,7 +645,10 @@ pub(super) fn script_with(
             read_seconds,
         });
     }
-    let script = Script::read(path).map_err(failed)?;
+    let mut script = Script::read(path).map_err(failed)?;
+    if !trusting {
+        script.keep_inside();
+    }
     let file = dataset.map(Path::to_path_buf);
     let Some(file) = file.or_else(|| script.model_file()) else {
         if let Some(Step {
@@ -621,8 +659,8 @@ pub(super) fn script_with(
             // a state file holds its model
             let folder = path.parent().unwrap_or(Path::new(""));
             let file = folder.join(state::file_name(name));
-            let bytes = std::fs::read(&file).map_err(|e| {
-                let what = format!("{}: cannot be opened: {e}", file.display());
+            let bytes = disk::read(&file).map_err(|e| {
+                let what = format!("{}: cannot be opened: {e}", disk::text(&file));
                 Diagnostic::error("cannot_open", what)
             })?;
             let saved = Saved::read(&bytes).map_err(Error::into_first)?;
@@ -636,7 +674,10 @@ pub(super) fn script_with(
                 read_seconds: 0.0,
             });
         }
-        let d = Diagnostic::error("no_model", format!("{} names no dataset", path.display()));
+        let d = Diagnostic::error(
+            "no_model",
+            format!("{} names no dataset", disk::text(&path)),
+        );
         return Err(d.help("begin it with FILE/MODEL=name").into());
     };
     let base = script.output.clone().unwrap_or_else(|| stem(path));
@@ -661,9 +702,9 @@ fn missing(script: &Script, path: &Path, file: &Path) -> Failure {
     let name = script.model.as_deref().unwrap_or_default();
     let mut d = Diagnostic::error(
         "cannot_open",
-        format!("there is no dataset {}", file.display()),
+        format!("there is no dataset {}", disk::text(&file)),
     );
-    d.file = Some(path.display().to_string());
+    d.file = Some(disk::text(&path));
     if !script.answered {
         return Failure::in_files(Exit::Input, vec![d]);
     }

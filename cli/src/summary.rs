@@ -2,6 +2,7 @@
 //! a picture of the results.
 
 use super::table::Table;
+use cognate::disk;
 use cognate::report::{Plot, svg::panels};
 use cognate::results::{Accuracy, Kind, Run, Seconds, Warning, digits_of_six};
 use std::collections::BTreeMap;
@@ -210,7 +211,7 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
         text += "the model has no REQUEST: --column EXPR adds a column to the table\n";
     }
     for file in written {
-        text += &format!("{}\n", file.display());
+        text += &format!("{}\n", disk::text(&file));
     }
     text
 }

@@ -2,14 +2,17 @@
 
 use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, threads};
 use super::progress::Progress;
+use super::recorded;
 use super::render::Sources;
 use super::run::{self, Single};
 use super::table::Table as Text;
+use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, interrupt, remark, say, width};
 use cognate::analysis::session::Options;
 use cognate::analysis::sweep::design::{self, Values};
 use cognate::analysis::sweep::{Follow, Row, Sweep, Table};
 use cognate::diagnostic::{Diagnostic, Error};
+use cognate::disk;
 use cognate::results::format::Style;
 use cognate::results::{self, Status, digits_of_six};
 use std::path::{Path, PathBuf};
@@ -59,6 +62,8 @@ pub struct Args {
     #[arg(long, short, value_name = "FILE")]
     out: Option<PathBuf>,
     #[command(flatten)]
+    writing: WritingArgs,
+    #[command(flatten)]
     span: SpanArgs,
     #[command(flatten)]
     integration: IntegrationArgs,
@@ -90,11 +95,14 @@ pub fn run(args: &Args) -> Outcome {
     let (out, format) = table_path(args)?;
     let (mut sweep, base) = open(args)?;
     let points = prepare(args, &mut sweep)?;
-    let out = out.unwrap_or_else(|| PathBuf::from(format!("{base}_sweep.csv")));
-    let mut table = Table::open(&out, &sweep, &points)?;
+    let out = out.unwrap_or_else(|| disk::path(format!("{base}_sweep.csv")));
+    if let Some(file) = &format {
+        args.writing.check([file])?;
+    }
+    let mut table = Table::open_with(&out, &sweep, &points, args.writing.leave())?;
     let missing = table.missing();
     if !args.quiet && table.n_found() > 0 {
-        let (found, all, out) = (table.n_found(), points.len(), out.display());
+        let (found, all, out) = (table.n_found(), points.len(), disk::text(&out));
         remark(format!("{found} of {all} runs are in {out} already"));
     }
     interrupt::results_begin();
@@ -111,7 +119,7 @@ pub fn run(args: &Args) -> Outcome {
     progress.done();
     outcome?;
     if interrupt::requested() && done < points.len() {
-        let (all, out) = (points.len(), out.display());
+        let (all, out) = (points.len(), disk::text(&out));
         remark(format!(
             "interrupted: {done} of {all} runs are in {out}; the same command goes on"
         ));
@@ -121,12 +129,12 @@ pub fn run(args: &Args) -> Outcome {
     // write and report
     table.complete()?;
     if let Some(file) = &format {
-        results::write(&table.numbers(), file, Style::default())?;
+        (args.writing).run(&table.numbers(), file, Style::default())?;
     }
     if !args.quiet {
         say(&overview(&sweep, table.rows()));
         let files = [&out].into_iter().chain(&format);
-        let files: Vec<String> = files.map(|file| file.display().to_string()).collect();
+        let files: Vec<String> = files.map(|file| disk::text(&file)).collect();
         remark(format!("{} runs in {}", points.len(), files.join(", ")));
     }
     Ok(told(args, table.rows()))
@@ -146,7 +154,7 @@ fn table_path(args: &Args) -> Result<(Option<PathBuf>, Option<PathBuf>), Failure
     }
     Err(Failure::usage(format!(
         "--out {}: the table of a sweep is .csv or .parquet",
-        out.display()
+        disk::text(&out)
     )))
 }
 
@@ -297,7 +305,7 @@ fn listed(
         note("--design".into(), file, d.into());
         return None;
     }
-    let run = match results::read(path) {
+    let run = match recorded::read(path) {
         Ok(run) => run,
         Err(d) => {
             note("--design".into(), file, d.into());

@@ -4,7 +4,7 @@
 //! every machine. In a PDF they are outlines, which need no face to be read.
 
 use crate::diagnostic::Diagnostic;
-use crate::results;
+use crate::disk;
 use std::path::Path;
 
 /// A format of pictures.
@@ -51,16 +51,17 @@ impl PictureFormat {
     }
 }
 
-/// Writes a picture to a file, in the format of its name; `svg`: the text of the picture as SVG.
+/// Returns the contents of a file of a picture, in the format of its name; `svg`: the text of the
+/// picture as SVG.
 ///
 /// # Errors
-/// When no format of pictures has this ending, or the file cannot be written.
-pub fn write(svg: &str, file: &Path) -> Result<(), Diagnostic> {
+/// When no format of pictures has this ending, or it is none of this program.
+pub fn bytes(svg: &str, file: &Path) -> Result<Vec<u8>, Diagnostic> {
     let Some(format) = PictureFormat::of(file) else {
-        let what = format!("{}: pictures are .svg, .png and .pdf", file.display());
+        let what = format!("{}: pictures are .svg, .png and .pdf", disk::text(&file));
         return Err(Diagnostic::error("picture_format", what));
     };
-    results::write_bytes(file, &format.bytes(svg)?)
+    format.bytes(svg)
 }
 
 #[cfg(any(feature = "png", feature = "pdf"))]

@@ -7,6 +7,7 @@
 
 pub mod comparison;
 pub mod csv;
+mod cut;
 mod digest;
 mod file;
 pub mod format;
@@ -27,6 +28,7 @@ pub mod res;
 mod run;
 mod seconds;
 mod units;
+mod writing;
 
 pub use digest::digest;
 pub use file::{read, write, write_bytes, write_text};
@@ -39,5 +41,7 @@ pub use record::{
 pub use run::{Column, Component, Entity, Kind, Requested, Run, Sequence};
 pub use seconds::Seconds;
 pub use units::{Units, component_unit};
+pub use writing::Writing;
 
+use cut::{no_row, whole_lines};
 use number::{malformed, number};

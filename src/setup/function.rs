@@ -279,7 +279,7 @@ pub(super) fn read_formula(file: &Path) -> Result<String, String> {
     });
     let function = bare.map_or(whole.as_str(), |(_, function)| function.trim());
     match function.is_empty() {
-        true => Err(format!("{}: there is no function in it", file.display())),
+        true => Err(format!("{}: there is no function in it", disk::text(&file))),
         false => Ok(function.to_owned()),
     }
 }
@@ -297,19 +297,19 @@ pub(super) fn read_points(file: &Path) -> Result<Vec<[f64; 2]>, String> {
             &[x, y] if cells.len() == 2 => points.push([x, y]),
             _ if points.is_empty() || cells.is_empty() => {}
             _ => {
-                let place = format!("{}:{number}", file.display());
+                let place = format!("{}:{number}", disk::text(&file));
                 return Err(format!("{place}: a time and a value should stand here"));
             }
         }
     }
     match points.is_empty() {
-        true => Err(format!("{}: there are no points in it", file.display())),
+        true => Err(format!("{}: there are no points in it", disk::text(&file))),
         false => Ok(points),
     }
 }
 
 fn contents(file: &Path) -> Result<String, String> {
-    let bytes = disk::read(file).map_err(|e| format!("{}: {e}", file.display()))?;
+    let bytes = disk::read(file).map_err(|e| format!("{}: {e}", disk::text(&file)))?;
     Ok(String::from_utf8_lossy(&as_utf8(bytes)).into_owned())
 }
 

@@ -351,14 +351,19 @@ fn the_example_runs_from_its_files_to_table_record_log_and_picture() {
 }
 
 #[test]
-fn results_of_others_are_kept_and_those_of_an_earlier_run_are_replaced() {
+fn results_of_others_stay_and_those_of_an_earlier_run_are_kept_once() {
     let example = "examples/slider_crank.acf";
     let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("keeps");
     let _ = std::fs::remove_dir_all(&dir);
     std::fs::create_dir_all(&dir).unwrap();
     std::fs::write(dir.join("slider_crank.res"), "somebody's").unwrap();
-    let run = || cognate(&["run", example, "--out", path(&dir)]);
-    let first = run();
+    let run = |more: &[&str]| cognate(&[&["run", example, "--out", path(&dir)], more].concat());
+    // nothing is solved where it could not be written
+    let refused = run(&[]);
+    assert_eq!(refused.code, 2, "{}", refused.err);
+    assert!(refused.err.contains("file_exists") && refused.err.contains("slider_crank.res"));
+    assert_eq!(contents(&dir).len(), 1);
+    let first = run(&["--overwrite"]);
     assert!(first.err.contains("kept as") && first.err.contains("slider_crank.res~"));
     let kept = std::fs::read_to_string(dir.join("slider_crank.res~")).unwrap();
     assert_eq!(kept, "somebody's");
@@ -370,18 +375,37 @@ fn results_of_others_are_kept_and_those_of_an_earlier_run_are_replaced() {
     };
     let before = names();
     assert_eq!(before.len(), 8);
-    assert!(!run().err.contains("kept as"));
-    assert_eq!(names(), before);
+    for _ in 0..2 {
+        let again = run(&[]);
+        assert!(
+            again.code == 0 && !again.err.contains("kept as"),
+            "{}",
+            again.err
+        );
+        // somebody's file has the name with one ~ already
+        let kept = before
+            .iter()
+            .filter(|name| !name.to_string_lossy().contains('~'));
+        let all: Vec<_> = names()
+            .into_iter()
+            .filter(|name| !before.contains(name))
+            .collect();
+        assert_eq!(all.len(), kept.count(), "{all:?}");
+    }
+    let kept = std::fs::read_to_string(dir.join("slider_crank.res~")).unwrap();
+    assert_eq!(kept, "somebody's");
     // what somebody has changed is somebody's
     let csv = dir.join("slider_crank.csv");
     let mut text = std::fs::read_to_string(&csv).unwrap();
     text += "a note\n";
     std::fs::write(&csv, &text).unwrap();
-    assert!(run().err.contains("slider_crank.csv~"));
-    assert_eq!(
-        std::fs::read_to_string(dir.join("slider_crank.csv~")).unwrap(),
-        text
+    let refused = run(&[]);
+    assert!(
+        refused.code == 2 && refused.err.contains("slider_crank.csv"),
+        "{}",
+        refused.err
     );
+    assert_eq!(std::fs::read_to_string(&csv).unwrap(), text);
 }
 
 /// Names and contents of the files of a folder.

@@ -59,7 +59,11 @@ fn models_of_the_manual_are_written_and_never_over_others() {
     assert_eq!(write().code, 0);
     let text = std::fs::read_to_string(folder.join("cam.adm")).unwrap();
     assert_eq!(text, manual::example("cam").unwrap().dataset);
-    assert_ne!(write().code, 0);
+    std::fs::write(folder.join("cam.adm"), "mine").unwrap();
+    let refused = write();
+    assert_eq!(refused.code, 2, "{}", refused.err);
+    let text = std::fs::read_to_string(folder.join("cam.adm")).unwrap();
+    assert_eq!(text, "mine");
 }
 
 #[test]

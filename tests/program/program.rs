@@ -13,6 +13,7 @@ mod capabilities;
 mod cli;
 mod cli_eval;
 mod configuration;
+mod disk;
 mod doors;
 mod elements;
 mod exchange;

@@ -7,6 +7,7 @@
 use crate::arguments::SpanArgs;
 use crate::render::Sources;
 use crate::run::{self, Single};
+use crate::writing::WritingArgs;
 use crate::{Exit, complain_in_files, width};
 use crate::{Failure, configuration, draw, elements, interrupt, summary, verify as verifying};
 use cognate::analysis::session::script::obey;
@@ -16,9 +17,10 @@ use cognate::analysis::work_limit::ProcessClock;
 use cognate::dataset::Reading;
 use cognate::dataset::command::{Command, Step};
 use cognate::diagnostic::{Cause, Diagnostic, Error, Severity};
+use cognate::disk;
 use cognate::model::{ElementKind, Model};
 use cognate::report::{Curve, Plot};
-use cognate::results::{self, Status, digits_of_six};
+use cognate::results::{Status, digits_of_six};
 use std::path::{Path, PathBuf};
 
 /// Output steps of a run when nobody says.
@@ -72,7 +74,7 @@ impl Loaded {
     /// Tells what has been read and solved.
     pub fn info(&self) -> String {
         let model = &self.reading.model;
-        let mut text = format!("{}: {}\n", self.file.display(), model.title.trim());
+        let mut text = format!("{}: {}\n", disk::text(&self.file), model.title.trim());
         let counted = ElementKind::ALL.iter();
         let counted = counted.map(|kind| (model.numbers(*kind).len(), kind.keyword()));
         let counted = counted.filter(|(n, _)| *n > 0);
@@ -81,7 +83,7 @@ impl Loaded {
         let warnings = self.reading.diagnostics.iter();
         let warnings = warnings.filter(|d| d.severity == Severity::Warning).count();
         if warnings > 0 {
-            let files = self.file.display();
+            let files = disk::text(&self.file);
             text += &format!("{warnings} warnings: cognate check {files} tells them\n");
         }
         let ends = self.steps.iter().filter(|s| is_simulation(s));
@@ -144,12 +146,7 @@ impl Loaded {
     /// When the file cannot be written, or is the one that was read.
     pub fn save(&self, file: &Path) -> Result<(), Diagnostic> {
         let source = &self.reading.dataset.source;
-        let read = source.file.as_deref().map(Path::new);
-        if read.is_some_and(|read| crate::convert::same_file(file, read)) {
-            let what = "the output is the input, which is never overwritten";
-            return Err(Diagnostic::error("usage", what));
-        }
-        results::write_bytes(file, &source.encode(&source.text))
+        WritingArgs::default().bytes(file, &source.encode(&source.text))
     }
 
     /// Counts the freedoms, and says what is fixed twice and what is free.

@@ -32,6 +32,14 @@ struct Piece {
 impl Names {
     /// Replaces names by what they stand for, in parentheses.
     pub fn expand(&self, typed: &str) -> Expansion {
+        if typed.len() > MOST_CHARACTERS {
+            // no expression has so many characters: it is refused as it stands
+            return Expansion {
+                typed: typed.to_owned(),
+                text: typed.to_owned(),
+                pieces: Vec::new(),
+            };
+        }
         let mut text = String::with_capacity(typed.len());
         let mut pieces = Vec::new();
         let mut at = 0;

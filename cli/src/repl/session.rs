@@ -6,6 +6,7 @@ use super::model::Loaded;
 use super::names::{Expansion, Names};
 use crate::eval::DialectName;
 use crate::formula::{Formula, Setting, derivative_names, give, times};
+use crate::writing::WritingArgs;
 use crate::{Failure, anatomy};
 use crate::{card, explain, plot, statements};
 use cognate::diagnostic::{Cause, Diagnostic};
@@ -437,7 +438,8 @@ impl Session {
         };
         let shown = match file {
             Some(file) => svg(&picture)
-                .and_then(|text| picture::write(&text, Path::new(file)))
+                .and_then(|text| picture::bytes(&text, Path::new(file)))
+                .and_then(|bytes| WritingArgs::default().bytes(Path::new(file), &bytes))
                 .map(|()| format!("plot in {file}\n")),
             None => terminal(&picture, plot::terminal_style()),
         };

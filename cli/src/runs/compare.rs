@@ -1,12 +1,14 @@
 //! `cognate runs compare`: the largest differences between two runs, channel by channel.
 
+use crate::recorded;
 use crate::table::Table;
 use crate::{Exit, Outcome, remark, say, width};
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use cognate::results::comparison::{Comparison, Difference, compare};
 use cognate::results::format::Format;
 use cognate::results::kept::{self, KeptRun};
-use cognate::results::{self, digits_of_six, json};
+use cognate::results::{digits_of_six, json};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -52,7 +54,7 @@ fn part(text: &str) -> Result<f64, String> {
 /// When one cannot be read, or they share no time.
 pub fn run(args: &Args) -> Outcome {
     let [a, b] = files(&args.first, &args.second)?;
-    let runs = [results::read(&a)?, results::read(&b)?];
+    let runs = [recorded::read(&a)?, recorded::read(&b)?];
     let found = compare(&runs[0], &runs[1], args.interpolate)?;
     match args.json {
         true => say(&json::text(&as_json(&found, [&a, &b]))),
@@ -118,7 +120,7 @@ fn print(found: &Comparison, files: [&Path; 2], all: bool, time_unit: &str) {
     if shown > 0 {
         say(&table(&found.channels[..shown]));
     }
-    let [a, b] = files.map(|f| f.display().to_string());
+    let [a, b] = files.map(|f| disk::text(&f));
     let mut facts = vec![format!(
         "{differing} of {} channels differ between {a} and {b}",
         found.channels.len()
@@ -208,7 +210,7 @@ fn as_json(found: &Comparison, files: [&Path; 2]) -> Value {
         })
     };
     json!({
-        "files": files.map(|f| f.display().to_string()),
+        "files": files.map(|f| disk::text(&f)),
         "outputs": found.outputs,
         "left_out": found.left_out,
         "interpolated": found.interpolated,

@@ -23,6 +23,7 @@ pub use table::Table;
 
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
+use crate::analysis::stack;
 use crate::analysis::system::closures::{Call, Hook};
 use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
@@ -34,9 +35,6 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// Stack of a thread that runs models, in bytes; what is not used is not taken.
-const STACK_BYTES: usize = 256 << 20;
 
 /// Many runs of one model.
 ///
@@ -284,13 +282,14 @@ impl Sweep {
             follow,
         };
         let threads = threads.clamp(1, wanted.len().max(1));
+        let stack_bytes = stack::bytes(threads);
         let mut outcome = Ok(());
         std::thread::scope(|scope| {
             let (sender, rows) = channel();
             let mut begun = 0;
             for _ in 0..threads {
                 let (crew, sender) = (&crew, sender.clone());
-                let builder = std::thread::Builder::new().stack_size(STACK_BYTES);
+                let builder = std::thread::Builder::new().stack_size(stack_bytes);
                 let work = move || crew.work(&sender);
                 begun += usize::from(builder.spawn_scoped(scope, work).is_ok());
             }
