@@ -170,6 +170,6 @@ mod tests {
         assert_eq!(of("a/b.PNG"), Some(PictureFormat::Png));
         assert_eq!(of("b.svg.pdf"), Some(PictureFormat::Pdf));
         assert_eq!(of("png").or(of("b.txt")), None);
-        assert!(write("", Path::new("b.txt")).is_err());
+        assert!(bytes("", Path::new("b.txt")).is_err());
     }
 }
