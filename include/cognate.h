@@ -335,7 +335,8 @@ void cognate_names_free(CognateNames *names);
 // Returns options of which none is chosen.
 CognateOptions *cognate_options_new(void);
 
-// Asks for a further column: any expression of the function language.
+// Asks for a further column: an expression of the function language, in which elements may have their
+// names ("DX(slider.cm, ground)"), or a component of a set of results ("crank_bearing.FX").
 bool cognate_options_column(CognateOptions *options, const char *expression, CognateError **error);
 
 // Chooses the permitted local error of the integration.
@@ -354,7 +355,9 @@ bool cognate_options_skip(CognateOptions *options, const char *keyword, CognateE
 // permitted error.
 void cognate_options_accuracy(CognateOptions *options, bool wanted);
 
-// Asks for sets of results of all elements, or for none of them.
+// Asks for sets of results of all elements, or for what is asked for alone. Without a word a session
+// has all of them where the dataset asks for RESULTS, or where no column and no REQUEST is asked for
+// (of a model of more than 400 elements then the places of the bodies).
 void cognate_options_full(CognateOptions *options, bool wanted);
 
 // Asks for positions and angles of all parts, whatever else is recorded.
@@ -489,7 +492,8 @@ const char *cognate_session_name(const CognateSession *session, size_t column);
 // number; NULL: there is no such column.
 const char *cognate_session_unit(const CognateSession *session, size_t column);
 
-// Finds a column by its name, without regard to blanks and case; SIZE_MAX: there is none.
+// Finds a column by its name, without regard to blanks and case, or by its element
+// ("JOINT/1.FX"); SIZE_MAX: there is none, or there are several.
 size_t cognate_session_find(const CognateSession *session, const char *name);
 
 // Returns the numbers of a column, until the next simulation, and puts how many there are into

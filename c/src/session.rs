@@ -8,7 +8,7 @@ use engine::Error;
 use engine::analysis::linear::Wanted;
 use engine::analysis::session::script::obey;
 use engine::analysis::session::state::Saved;
-use engine::analysis::session::{Options, Session};
+use engine::analysis::session::{Options, Session, check_column};
 use engine::analysis::watch::Watch;
 use engine::dataset::Dataset;
 use engine::dataset::command::{Simulate, SimulationKind};
@@ -272,7 +272,7 @@ pub unsafe extern "C" fn cognate_session_new(
         } = options.unwrap_or(&default);
         let mut wrong = Vec::new();
         for (k, column) in options.columns.iter().enumerate() {
-            for mut d in model.model.check_expression(column) {
+            for mut d in check_column(&model.model, column) {
                 d.file = Some(format!("column {}", k + 1));
                 wrong.push(d);
             }
@@ -286,6 +286,7 @@ pub unsafe extern "C" fn cognate_session_new(
             .contains_key(&SettingsStatement::Results);
         let mut options = Options {
             full: full.unwrap_or(asked),
+            named_only: *full == Some(false),
             ..options.clone()
         };
         model.prepared.setup.solve.complete(&mut options);
@@ -437,7 +438,8 @@ pub unsafe extern "C" fn cognate_session_unit(
     unsafe { look(session, std::ptr::null(), told) }
 }
 
-/// Finds a column by its name, without regard to blanks and case; SIZE_MAX: there is none.
+/// Finds a column by its name, without regard to blanks and case, or by its element
+/// ("JOINT/1.FX"); SIZE_MAX: there is none, or there are several.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_session_find(
     session: *const CognateSession,

@@ -1,7 +1,7 @@
 //! `cognate animate`: a run as a page that moves, or as an animated `.glb` file.
 
 use super::moved::{Dimensions, Moved, Source, has_ending, pictured};
-use super::{Exit, Failure, Outcome, interrupt, remark, run};
+use super::{Exit, Failure, Outcome, interrupt, recorded, remark, run};
 use cognate::diagnostic::Diagnostic;
 use cognate::model::Model;
 use cognate::report::mechanism::page::{Shown, page};
@@ -27,7 +27,8 @@ pub struct Args {
     /// page of the name of the run, here
     #[arg(short = 'o', long = "out", value_name = "FILE")]
     out: Vec<PathBuf>,
-    /// A further run of the same mechanism, shown pale over the first (.res, .parquet, .json, .gra)
+    /// A further run of the same mechanism, shown pale over the first: by its name, or a file of
+    /// its results (.res, .parquet, .json, .gra)
     #[arg(long, value_name = "RUN")]
     over: Option<PathBuf>,
     #[command(flatten)]
@@ -59,14 +60,19 @@ pub fn run(args: &Args) -> Outcome {
         run,
         folders,
     } = args.source.get()?;
-    let over = args.over.as_deref().map(results::read).transpose()?;
+    let over = args
+        .over
+        .as_deref()
+        .map(recorded::results_file)
+        .transpose()?;
+    let over = over.as_deref().map(results::read).transpose()?;
     let mut out = args.out.clone();
     if out.is_empty() {
         out.push(PathBuf::from(format!("{}.html", run.name)));
     }
     let pictured = args
         .dimensions
-        .added_to(pictured(&model, &run, &folders)?)?;
+        .added_to(&model, pictured(&model, &run, &folders)?)?;
     #[cfg(feature = "geometry")]
     let pictured = match args.interference {
         true => marked(pictured, &model, &run, &folders)?,

@@ -137,7 +137,10 @@ fn assembled(
         session.folders = file.parent().map(Path::to_path_buf).into_iter().collect();
         session.preview(analysis, end)
     };
-    let mut found = begin(Options::default());
+    let mut found = begin(Options {
+        named_only: true,
+        ..Options::default()
+    });
     let ours = |d: &Diagnostic| d.is_any(&NOT_SOLVED_HERE);
     if found.iter().any(|d| is_error(d) && ours(d)) {
         // told, and left out to see the rest
@@ -145,6 +148,7 @@ fn assembled(
         let rest = begin(Options {
             zero_user: true,
             skip: unsolved.collect(),
+            named_only: true,
             ..Options::default()
         });
         found.retain(|d| ours(d) || is_error(d));

@@ -103,7 +103,10 @@ pub fn run(args: &Args) -> Outcome {
             asked,
         )?,
     };
-    let options = args.integration.given_to(Options::default());
+    let options = args.integration.given_to(Options {
+        named_only: true,
+        ..Options::default()
+    });
     let mut options = args.unsolved.given_to(options);
     // a run is gone through as it was solved
     let error = || recorded.and_then(|r| r["error"].as_f64());

@@ -66,10 +66,7 @@ fn select_columns(run: &mut Run, names: &[String]) -> Result<(), Failure> {
     }
     let mut table = vec![0];
     for name in names {
-        table.push(
-            run.find(name)
-                .ok_or_else(|| cognate::report::plot::unknown_column(run, name))?,
-        );
+        table.extend(run.resolve_all(name)?);
     }
     run.table = table;
     Ok(())

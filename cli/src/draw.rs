@@ -114,14 +114,13 @@ pub fn run(args: &Args) -> Outcome {
         folders,
     } = args.source.get()?;
     let highlighted = args.highlight.iter().map(|element| {
-        let exit = Exit::Usage;
         let found = model.find_element(element);
-        found.map_err(|d| Failure { exit, ..d.into() })
+        found.map_err(|d| Failure::at_argument("--highlight", element, d))
     });
     let highlighted = highlighted.collect::<Result<BTreeSet<ElementId>, Failure>>()?;
     let pictured = args
         .dimensions
-        .added_to(pictured(&model, &run, &folders)?)?;
+        .added_to(&model, pictured(&model, &run, &folders)?)?;
     let out = args.out.clone();
     // NAME.svg is the picture of the requests of a run
     let out = out.unwrap_or_else(|| PathBuf::from(format!("{}_drawing.svg", run.name)));

@@ -83,8 +83,9 @@ pub fn run(args: &Args) -> Outcome {
     let absent = loads
         .iter()
         .flat_map(|l| &l.left_out)
-        .filter_map(|l| l.parse().ok());
-    leave_out(&mut model, absent.collect());
+        .filter_map(|l| setup::Load::named(&model, l).ok());
+    let absent: Vec<setup::Load> = absent.collect();
+    leave_out(&mut model, absent);
     let text = model.to_text();
     let again = dataset::read_text(&text);
     if again.failed() || again.model.to_text() != text {

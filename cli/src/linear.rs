@@ -7,6 +7,7 @@ use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::watch::Watch;
 use cognate::diagnostic::{Cause, Diagnostic};
+use cognate::model::{ElementId, ElementKind};
 use cognate::results::{self, Status, json};
 use std::path::PathBuf;
 
@@ -27,12 +28,12 @@ pub struct Args {
     /// Leave out what depends on velocities
     #[arg(long)]
     no_damping: bool,
-    /// PINPUT whose VARIABLEs are the inputs (all when not given)
-    #[arg(long, value_name = "ID")]
-    pinput: Option<u32>,
-    /// POUTPUT whose VARIABLEs are the outputs (all when not given)
-    #[arg(long, value_name = "ID")]
-    poutput: Option<u32>,
+    /// PINPUT whose VARIABLEs are the inputs, by its number or name (all when not given)
+    #[arg(long, value_name = "ELEMENT")]
+    pinput: Option<String>,
+    /// POUTPUT whose VARIABLEs are the outputs, by its number or name (all when not given)
+    #[arg(long, value_name = "ELEMENT")]
+    poutput: Option<String>,
     /// Folder that NAME_linear.json and NAME_linear.m are written to
     #[arg(short = 'o', long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -64,7 +65,10 @@ pub fn run(args: &Args) -> Outcome {
     } else {
         (run::read(&args.model)?, run::stem(&args.model), Vec::new())
     };
-    let options = args.unsolved.given_to(Options::default());
+    let options = args.unsolved.given_to(Options {
+        named_only: true,
+        ..Options::default()
+    });
     let mut session = Session::new(reading.model, &base, options);
     session.folders = args
         .model
@@ -85,9 +89,17 @@ pub fn run(args: &Args) -> Outcome {
         remark(&session.run.record.stop_reason);
         return Ok(run::exit(status));
     }
+    let number = |option: &str, kind: ElementKind, text: &Option<String>| {
+        let found = text.as_ref().map(|text| {
+            let found = session.model.find_of(&[kind], text);
+            found.map_err(|d| Failure::at_argument(option, text, d))
+        });
+        let found: Option<ElementId> = found.transpose()?;
+        Ok::<_, Failure>(found.map(|id| id.number))
+    };
     let wanted = Wanted {
-        inputs: args.pinput,
-        outputs: args.poutput,
+        inputs: number("--pinput", ElementKind::Pinput, &args.pinput)?,
+        outputs: number("--poutput", ElementKind::Poutput, &args.poutput)?,
         no_damping: args.no_damping,
         shapes: None,
     };

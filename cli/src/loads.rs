@@ -144,7 +144,8 @@ fn opened(model: &Path) -> Result<(Model, Setup), Failure> {
 /// Makes or changes a load case, after its loads were looked for in the model.
 fn create(model: &Path, name: &str, loads: &[String]) -> Outcome {
     let (model, setup) = opened(model)?;
-    if name.eq_ignore_ascii_case("all") || name.parse::<Load>().is_ok() {
+    let is_load = Load::is_written(name) || Load::named(&model, name).is_ok();
+    if name.eq_ignore_ascii_case("all") || is_load {
         let what = format!("`{name}` is what a load is called, and no name for a load case");
         return Err(Failure::usage(what));
     }
@@ -204,16 +205,28 @@ fn choose(model: &Path, loads: &[String]) -> Outcome {
 
 /// Lets a function give a load, or takes it away again.
 fn drive(model: &Path, load: &str, function: Option<&str>) -> Outcome {
-    let (_, before) = opened(model)?;
+    let (opened_model, before) = opened(model)?;
+    let target = setup::target_of(&opened_model, load);
+    // the file may call it otherwise
+    let is_it = |name: &str| match (&target, setup::target_of(&opened_model, name)) {
+        (Ok(target), Ok(other)) => *target == other,
+        _ => name == load,
+    };
+    let mut driven = before.driven.iter().map(|(target, _)| target.text.as_str());
+    let known = driven.find(|name| is_it(name)).map(str::to_owned);
     let Some(function) = function else {
-        if before.driven.iter().all(|(target, _)| target.text != load) {
+        let Some(known) = known else {
             let known = before.driven.iter().map(|(target, _)| target.text.as_str());
             return Err(unknown("load with a function of yours", load, known).into());
-        }
-        edit::remove(&before, "loads", load)?;
+        };
+        edit::remove(&before, "loads", &known)?;
         remark(format!("{load} has the function of the dataset again"));
         return Ok(Exit::Done);
     };
+    if let Err(d) = target {
+        return Err(Failure::at_argument("LOAD", load, d));
+    }
+    let load = known.as_deref().unwrap_or(load);
     let after = edit::change(&before, |document| {
         let loads = edit::table(document, "loads");
         edit::set(loads, load, function.into());
@@ -321,11 +334,11 @@ fn list(file: &Path, as_json: bool) -> Outcome {
         names.filter(|name| holds(name)).collect()
     };
     let function = |load: &Load| -> Vec<String> {
-        let load = load.to_string();
-        let own = setup
-            .driven
-            .iter()
-            .filter(|(target, _)| target.text.split('.').next() == Some(load.as_str()));
+        let is_of = |target: &str| match (setup::target_of(&model, target), *load) {
+            (Ok((id, _)), Load::Element(own)) => id == own,
+            _ => false,
+        };
+        let own = (setup.driven.iter()).filter(|(target, _)| is_of(&target.text));
         own.map(|(_, name)| name.text.clone()).collect()
     };
     if as_json {

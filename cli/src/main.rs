@@ -58,14 +58,14 @@ mod width;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use cognate::dataset::Dataset;
-use cognate::diagnostic::{Cause, Diagnostic, Error};
+use cognate::diagnostic::{Cause, Diagnostic, Error, Span};
 use render::Sources;
 use std::io::Write;
 use std::process::ExitCode;
 
 /// The ADAMS function language and the multibody solver that speaks it.
 #[derive(Parser)]
-#[command(name = "cognate", version, disable_help_subcommand = true, arg_required_else_help = true, after_help = EXIT_CODES)]
+#[command(name = "cognate", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 struct Cli {
     #[command(subcommand)]
     verb: Verb,
@@ -94,9 +94,11 @@ enum Verb {
     Loads(loads::Args),
     Mdi(mdi::Args),
     Motion(motion::Args),
+    #[command(aliases = ["graph", "chart"])]
     Plot(plot::Args),
     Repl(repl::Args),
     Report(report::Args),
+    #[command(aliases = ["solve", "simulate"])]
     Run(run::Args),
     Runs(runs::Args),
     Statements(statements::Args),
@@ -206,6 +208,31 @@ impl Failure {
     pub fn in_model(dataset: &Dataset, diagnostics: impl Into<Vec<Diagnostic>>) -> Self {
         let located = diagnostics.into().into_iter().map(|d| dataset.locate(d));
         Self::in_files(Exit::Model, located.collect())
+    }
+    /// Creates a failure from a mistake in an argument of the command line, which is shown with its
+    /// place.
+    pub fn at_argument(argument: &str, text: &str, mistake: Diagnostic) -> Self {
+        Self::at_arguments(argument, text, vec![mistake])
+    }
+    /// Creates a failure from mistakes in an argument of the command line.
+    pub fn at_arguments(argument: &str, text: &str, mistakes: Vec<Diagnostic>) -> Self {
+        let placed = |d: Diagnostic| {
+            let d = match d.span {
+                Some(_) => d,
+                None => d.at(text, Span::new(0, text.len())),
+            };
+            Diagnostic {
+                file: Some(argument.to_owned()),
+                ..d
+            }
+        };
+        let mut sources = Sources::default();
+        sources.add(argument, text);
+        Self {
+            exit: Exit::Input,
+            diagnostics: mistakes.into_iter().map(placed).collect(),
+            sources,
+        }
     }
     /// Creates a failure for a command that contradicts itself.
     pub fn usage(message: impl Into<String>) -> Self {

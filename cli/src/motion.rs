@@ -2,7 +2,7 @@
 
 use super::convert::same_file;
 use super::output::StyleArgs;
-use super::recorded::model_of;
+use super::recorded::{model_of, results_file};
 use super::{Exit, Failure, Outcome, remark, say, summary, width};
 use cognate::analysis::motion::{MarkerMeasure, Recorded};
 use cognate::diagnostic::{Cause, Diagnostic};
@@ -112,22 +112,13 @@ enum Takes {
     Jkl,
 }
 
-/// Returns the number of the marker that is called `MARKER/20`, `20`, by its name, or `ground`.
+/// Returns the number of a marker; 0 of `ground`.
 fn marker(model: &Model, text: &str) -> Result<u32, Diagnostic> {
     if text.eq_ignore_ascii_case("ground") || text == "0" {
         return Ok(0);
     }
-    if let Ok(number) = text.parse() {
-        return Ok(number);
-    }
-    let id = model.find_element(text)?;
-    match id.kind {
-        ElementKind::Marker => Ok(id.number),
-        _ => Err(Diagnostic::error(
-            "unfit_value",
-            format!("{id} is not a marker"),
-        )),
-    }
+    let found = model.find_of(&[ElementKind::Marker], text);
+    found.map(|id| id.number)
 }
 
 /// Shows or writes the motion of markers.
@@ -141,7 +132,7 @@ pub fn run(args: &Args) -> Outcome {
         let what = "the output is the input, which is never overwritten";
         return Err(Failure::usage(what));
     }
-    let run = results::read(&args.results)?;
+    let run = results::read(&results_file(&args.results)?)?;
     let model = model_of(&args.results, args.model.as_deref())?;
     let group = group(args, &run, &model)?;
     match written {
@@ -192,7 +183,7 @@ fn group(args: &Args, run: &Run, model: &Model) -> Result<Run, Diagnostic> {
                     Takes::Jl => format!("{function}({i},{j},{l})"),
                     Takes::Jkl => format!("{function}({i},{j},{k},{l})"),
                 };
-                let Some(measure) = MarkerMeasure::of(&text) else {
+                let Ok(Some(measure)) = MarkerMeasure::of(model, &text) else {
                     continue;
                 };
                 let mut column = match recorded.column(&text, &measure) {
@@ -248,6 +239,5 @@ fn name(model: &Model, id: ElementId) -> String {
     if id.number == 0 {
         return "ground".into();
     }
-    let named = model.element(id).and_then(|e| e.place().name.clone());
-    named.unwrap_or_else(|| format!("{}_{}", id.kind, id.number))
+    model.labels().name(model, id)
 }

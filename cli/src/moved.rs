@@ -31,20 +31,22 @@ pub struct Source {
 /// Distances that a picture shows.
 #[derive(clap::Args)]
 pub struct Dimensions {
-    /// Show the distance of two markers as a dimension, as 20,10; its value changes with the
-    /// mechanism (repeatable)
+    /// Show the distance of two markers as a dimension, as 20,10 or slider.cm,10; its value changes
+    /// with the mechanism (repeatable)
     #[arg(long = "dimension", value_name = "I,J")]
-    pairs: Vec<Pair>,
+    pairs: Vec<String>,
 }
 
 impl Dimensions {
-    /// Adds the dimensions to a picture.
+    /// Adds the dimensions to a picture of a model.
     ///
     /// # Errors
     /// When a marker does not exist, or floats.
-    pub fn added_to(&self, mut pictured: Pictured) -> Result<Pictured, Diagnostic> {
-        for &pair in &self.pairs {
-            let dimension = Dimension::new(&pictured.bodies, pair)?;
+    pub fn added_to(&self, model: &Model, mut pictured: Pictured) -> Result<Pictured, Failure> {
+        for text in &self.pairs {
+            let told = |d| Failure::at_argument("--dimension", text, d);
+            let pair = Pair::of(model, text).map_err(told)?;
+            let dimension = Dimension::new(&pictured.bodies, pair).map_err(told)?;
             pictured.dimensions.push(dimension);
         }
         Ok(pictured)
@@ -87,7 +89,7 @@ impl Source {
             self.span.refuse_beside(&self.file)?;
         }
         if !is_dataset && !run::has_commands(&self.file) {
-            let run = results::read(&self.file)?;
+            let run = results::read(&recorded::results_file(&self.file)?)?;
             let (file, model) = self.model_of(&run)?;
             let folders = [file.parent(), self.file.parent()];
             let folders = folders.into_iter().flatten().map(Path::to_path_buf);

@@ -3,7 +3,7 @@
 use super::convert::same_file;
 use super::grouped;
 use super::moved::has_ending;
-use super::recorded::add_measures;
+use super::recorded::{add_measures, results_file};
 use super::response::responses;
 use super::setup::{self, Setup};
 use super::table::Table;
@@ -35,8 +35,9 @@ pub struct Args {
     /// Results to read: .csv, .parquet, .json, .res, .req, .gra or .msg; or a model (.adm, .acf),
     /// whose functions are shown
     input: PathBuf,
-    /// Column to show (repeatable), or a displacement, velocity or acceleration of markers, as
-    /// VX(20,10), or a function of the model; the first few when none is given
+    /// Column to show (repeatable), all of a pattern, as 'slider.*', a displacement, velocity or
+    /// acceleration of markers, as 'VX(slider.cm,10)', or a function of the model; the first few
+    /// when none is given
     #[arg(long, value_name = "COLUMN")]
     y: Vec<String>,
     /// Group whose functions are shown (repeatable): of the model, the run by its name, or a set of
@@ -49,7 +50,7 @@ pub struct Args {
     /// Column to show them over; time when not given, of a sweep its first parameter
     #[arg(long, value_name = "COLUMN")]
     x: Option<String>,
-    /// Results of another run, shown over the first (repeatable)
+    /// Results of another run, by its name or a file, shown over the first (repeatable)
     #[arg(long, value_name = "FILE")]
     over: Vec<PathBuf>,
     /// Show the values, or what is made of them
@@ -236,7 +237,7 @@ fn runs(args: &Args) -> Result<Vec<Source>, Diagnostic> {
                 .unwrap_or_default();
             Ok(Source {
                 label: folder + &stem(file),
-                run: results::read(file)?,
+                run: results::read(&results_file(file)?)?,
             })
         })
         .collect()

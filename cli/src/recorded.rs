@@ -6,8 +6,10 @@ use super::{Failure, run};
 use cognate::analysis::motion::{MarkerMeasure, Recorded, marker_digest};
 use cognate::dataset::command::Command;
 use cognate::diagnostic::Diagnostic;
+use cognate::expr::ast::{Callee, Dialect};
+use cognate::expr::{Profile, Symbol, symbol};
 use cognate::model::Model;
-use cognate::results::Run;
+use cognate::results::{Run, kept};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -60,6 +62,36 @@ fn namesake(results: &Path) -> Option<PathBuf> {
     dataset.is_file().then_some(dataset)
 }
 
+/// Returns the file of results that an argument names: the file itself, or of a run that it names,
+/// as `results/crank`, the one that has most.
+///
+/// # Errors
+/// When there is neither, with runs that are named nearly so.
+pub(super) fn results_file(named: &Path) -> Result<PathBuf, Diagnostic> {
+    if named.is_file() {
+        return Ok(named.to_owned());
+    }
+    let run = match kept::find(named) {
+        Ok(run) => run,
+        // a file with an ending is told as one that cannot be opened
+        Err(_) if named.extension().is_some() => return Ok(named.to_owned()),
+        Err(d) => return Err(d),
+    };
+    let files = run.files();
+    let of_ending = |ending: &&str| {
+        let name = format!("{}.{ending}", run.name);
+        let is_it = |path: &Path| path.file_name().is_some_and(|n| *n == *name);
+        let mut files = files.iter().filter(|f| f.bytes.is_some());
+        files.find(|f| is_it(&f.path)).map(|f| f.path.clone())
+    };
+    let endings = ["parquet", "res", "csv", "gra", "req"];
+    endings.iter().find_map(of_ending).ok_or_else(|| {
+        let what = format!("the run {} has no table that can be read", run.place());
+        let d = Diagnostic::error("unknown_run", what);
+        d.help("`cognate run --format res` writes one")
+    })
+}
+
 /// Reads the record beside results.
 pub(super) fn record_of(results: &Path) -> Option<Value> {
     let text = std::fs::read(results.with_extension("json")).ok()?;
@@ -107,15 +139,26 @@ pub(super) fn add_measures(
     given: Option<&Path>,
     names: &[&str],
 ) -> Result<(), Failure> {
+    let is_call = |name: &str| {
+        let word = name.split_once('(').map(|(word, _)| word.trim());
+        let meaning = word.and_then(|w| symbol(w, Dialect::Function, Profile::Adams));
+        matches!(meaning, Some(Symbol::Callee(Callee::Measure(_))))
+    };
     let absent = names.iter().filter(|name| results.find(name).is_none());
-    let asked = absent.filter_map(|name| Some((*name, MarkerMeasure::of(name)?)));
-    let asked: Vec<(&str, MarkerMeasure)> = asked.collect();
+    let asked: Vec<&str> = absent.copied().filter(|name| is_call(name)).collect();
     // without a model these are names like any other
     let has_model = given.is_some() || record_of(file).is_some() || namesake(file).is_some();
     if asked.is_empty() || !has_model {
         return Ok(());
     }
     let model = model_of(file, given)?;
+    let mut measures = Vec::new();
+    for name in asked {
+        let measure = MarkerMeasure::of(&model, name);
+        let measure = measure.map_err(|wrong| Failure::at_arguments("--y", name, wrong))?;
+        measures.extend(measure.map(|measure| (name, measure)));
+    }
+    let asked = measures;
     let recorded = Recorded::new(results, &model);
     let columns = asked
         .iter()

@@ -92,6 +92,7 @@ pub fn run(args: &Args) -> Outcome {
         name: job.base,
         options: args.unsolved.given_to(Options {
             columns: columns(args, &model),
+            named_only: true,
             ..Options::default()
         }),
         model: &model,

@@ -9,7 +9,7 @@ use super::setup::{self, Asked, Prepared, Setup};
 use super::{Exit, Failure, Outcome, interrupt, output, remark, say, summary};
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::state::{self, Saved};
-use cognate::analysis::session::{Chosen, Options, Session};
+use cognate::analysis::session::{Chosen, Options, Session, check_column};
 use cognate::analysis::watch::Watch;
 use cognate::analysis::work_limit::ProcessClock;
 use cognate::dataset::command::{Command, Script, SimulationKind, Step};
@@ -329,7 +329,7 @@ fn check_columns(args: &Args, model: &Model, steps: &[Step]) -> Result<(), Failu
             1 => "--column".to_owned(),
             _ => format!("--column {}", k + 1),
         };
-        for mut d in model.check_expression(text) {
+        for mut d in check_column(model, text) {
             if is_final || !d.is(Cause::UnknownElement) {
                 d.file = Some(place.clone());
                 failure.diagnostics.push(d);

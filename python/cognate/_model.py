@@ -39,7 +39,9 @@ class Options(TypedDict, total=False):
     Attributes
     ----------
     columns : sequence of str
-        Further columns: any expressions of the function language.
+        Further columns: any expressions of the function language, in which elements may have their
+        names (``"DX(slider.cm, ground)"``), and components of sets of results
+        (``"crank_bearing.FX"``).
     error : float
         Permitted local error of the integration.
     method : str
@@ -47,7 +49,9 @@ class Options(TypedDict, total=False):
     accuracy : bool
         Give every column bars of error, from a further run at a smaller request.
     full : bool
-        Sets of results of all elements; where left out, if the dataset asks for RESULTS.
+        Sets of results of all elements. Where left out: if the dataset asks for RESULTS, and if
+        nothing else is asked for, no column and no REQUEST (of a model of more than 400 elements
+        then the places of the bodies alone). False: what is asked for alone.
     frames : bool
         Positions and angles of all parts, whatever else is recorded.
     max_steps : int

@@ -8,7 +8,6 @@ import os
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -69,7 +68,8 @@ class Run(Mapping[str, NDArray[np.float64]]):
     """Results of a run: a mapping from names of columns to arrays.
 
     Arrays are views of the memory of the run, without a copy; they cannot be written, and keep
-    that memory alive. Names are found without regard to blanks and case. Runs can be pickled.
+    that memory alive. Names are found without regard to blanks and case; ``"crank_bearing.FX"`` and
+    ``"JOINT/1.FX"`` are components of elements. Runs can be pickled.
 
     Examples
     --------
@@ -90,10 +90,7 @@ class Run(Mapping[str, NDArray[np.float64]]):
     # --- columns -----------------------------------------------------------------------------
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
-        index = self._core.find(name)
-        if index is None:
-            raise self._missing(name)
-        return self._array(index)
+        return self._array(self._core.resolve(name))
 
     def __contains__(self, name: object) -> bool:
         return isinstance(name, str) and self._core.find(name) is not None
@@ -108,14 +105,6 @@ class Run(Mapping[str, NDArray[np.float64]]):
         if index not in self._arrays:
             self._arrays[index] = self._core.column(index)
         return self._arrays[index]
-
-    def _missing(self, name: str) -> ColumnError:
-        names = [column[0] for column in self._columns]
-        near = get_close_matches(name, names, 3, 0.6)
-        advice = [f"did you mean {', '.join(near)}?"] if near else []
-        advice.append("columns are asked for before a run: model.run(…, columns=[…])")
-        advice.append("after it run.measure(…) finds motions of markers, of a run with full=True")
-        return self._no_column(f"there is no column `{name}`", advice)
 
     @staticmethod
     def _no_column(message: str, advice: list[str]) -> ColumnError:
@@ -174,9 +163,7 @@ class Run(Mapping[str, NDArray[np.float64]]):
         ndarray
             How far its values may be off.
         """
-        of = self._core.find(name)
-        if of is None:
-            raise self._missing(name)
+        of = self._core.resolve(name)
         for index, (_, _, bar_of) in enumerate(self._columns):
             if bar_of == of:
                 return self._array(index)
@@ -340,13 +327,8 @@ class Run(Mapping[str, NDArray[np.float64]]):
             return [index for index in self._table if index != 0]
         if isinstance(columns, str):
             raise TypeError("columns is a list of names, not one text")
-        chosen = []
-        for name in columns:
-            index = self._core.find(name)
-            if index is None:
-                raise self._missing(name)
-            chosen.append(index)
-        return chosen
+        chosen = [index for name in columns for index in self._core.resolve_all(name)]
+        return list(dict.fromkeys(chosen))
 
     def _units(self, chosen: Sequence[int]) -> dict[str, str]:
         return {self._columns[index][0]: self._columns[index][1] for index in chosen}
@@ -359,7 +341,7 @@ class Run(Mapping[str, NDArray[np.float64]]):
         Parameters
         ----------
         columns : sequence of str, or str, optional
-            The columns; those that tables show where left out.
+            The columns, or patterns such as ``"slider.*"``; those that tables show where left out.
         ax : matplotlib.axes.Axes, optional
             Where to plot; a figure with one panel for each unit where left out.
 

@@ -14,6 +14,8 @@ pub enum Kind {
     Model,
     /// a file of results that cannot be read or written
     Results,
+    /// a column that a run does not have
+    Column,
 }
 
 impl Kind {
@@ -22,6 +24,7 @@ impl Kind {
             Kind::Expr => "ExprError",
             Kind::Model => "ModelError",
             Kind::Results => "ResultsError",
+            Kind::Column => "ColumnError",
         }
     }
 }

@@ -61,6 +61,7 @@ impl Choices {
             columns: self.columns,
             full: (self.full)
                 .unwrap_or_else(|| of.model.settings.contains_key(&SettingsStatement::Results)),
+            named_only: self.full == Some(false),
             frames: self.frames,
             piecewise: self.piecewise,
             zero_user: self.zero_user,
@@ -264,7 +265,7 @@ impl Session {
 pub fn check_columns(py: Python<'_>, model: &Model, columns: &[String]) -> PyResult<()> {
     let mut wrong = Vec::new();
     for (k, text) in columns.iter().enumerate() {
-        for mut d in model.model.check_expression(text) {
+        for mut d in session::check_column(&model.model, text) {
             d.file = Some(format!("columns[{k}]"));
             wrong.push(d);
         }

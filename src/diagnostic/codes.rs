@@ -93,7 +93,8 @@ An operand or a closing parenthesis is missing at the end. The column is one pas
         summary: "a name that is no constant and no function of the language",
         explanation: "\
 Names are those of the language alone: constants (TIME, PI, DTOR, RTOD, MODE), IF, functions, and measures of the model.
-`cognate functions` lists them. There are no variables of one's own; a VARIABLE of the model is read by VARVAL(id).
+`cognate functions` lists them. A dataset has no variables of one's own: it reads a VARIABLE of the model by VARVAL(id).
+Programs and the prompt can name some: `Names` in Rust, `variables=` in Python, `:let` at the prompt.
 
 Upper and lower case are the same. Names of other languages are answered with what to write: LN is LOG, INT is AINT. The two
 languages keep their names apart: time is TIME in direct-entry functions and t in expression functions.

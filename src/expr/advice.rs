@@ -497,7 +497,7 @@ impl Place<'_> {
 const NO_COMPARISONS: &str =
     "there are no comparisons; IF(a-b: x, y, z) is x where a < b, y where a = b, z where a > b";
 const STAR: &str = "multiplication is written with a star, as in 2*TIME";
-const NO_VARIABLES: &str = "there are no variables of one's own: write the number, or read a VARIABLE of the model by VARVAL(id)";
+const NO_VARIABLES: &str = "write the number, or read a VARIABLE of the model by VARVAL(id); programs and the prompt can name variables of their own";
 
 /// Advises on a name that Adams View knows and the solver does not.
 fn of_view(name: &str) -> String {
@@ -505,7 +505,7 @@ fn of_view(name: &str) -> String {
         return format!("`{name}` is a variable of Adams View: write its value");
     }
     format!(
-        "`{name}` is a name of Adams View; here elements are called by their numbers, as in DX(12, 21)"
+        "`{name}` is a name of Adams View; functions take the numbers of elements, as DX(12, 21)"
     )
 }
 

@@ -16,6 +16,7 @@ pub mod kept;
 mod log;
 pub mod msg;
 pub mod msg_table;
+mod named;
 mod number;
 pub mod output_folder;
 #[cfg(feature = "parquet")]
@@ -27,6 +28,7 @@ pub mod res;
 mod run;
 mod seconds;
 mod units;
+mod words;
 
 pub use digest::digest;
 pub use file::{read, write, write_bytes, write_text};
@@ -39,5 +41,6 @@ pub use record::{
 pub use run::{Column, Component, Entity, Kind, Requested, Run, Sequence};
 pub use seconds::Seconds;
 pub use units::{Units, component_unit};
+pub use words::word_of;
 
 use number::{malformed, number};

@@ -1,7 +1,7 @@
 //! The results of a run as a table: named columns of one length, and which rows belong to what.
 
 use super::{Event, Record, Units};
-use crate::model::{ElementId, RequestKind};
+use crate::model::RequestKind;
 use std::ops::Range;
 
 /// The results of a run.
@@ -429,44 +429,6 @@ impl Run {
         let mut begun = begun.skip_while(|s| s.rows.start > row);
         begun.next().map(|s| s.kind)
     }
-    /// Returns the index of the column with this name, without regard to blanks and case. An
-    /// element may be named as it is elsewhere: `CONTACT/1.FX` and `1-CONTACT1.FX` are
-    /// `CONTACT_1.FX`, or that of the name that the dataset gives it.
-    pub fn find(&self, name: &str) -> Option<usize> {
-        let found = self.find_named(name);
-        found.or_else(|| self.find_named(&self.name_of_column(name)?))
-    }
-    /// Returns the column name for a component of an element: `hinge_XFORM.X` for `PART/2_XFORM.X`.
-    fn name_of_column(&self, text: &str) -> Option<String> {
-        let (set, component) = text.rsplit_once('.')?;
-        let ends = set.match_indices('_').map(|(at, _)| at);
-        let ends = ends.chain([set.len()]).rev();
-        let element = |end: usize| Some((set[..end].parse::<ElementId>().ok()?, &set[end..]));
-        let (id, more) = ends.into_iter().find_map(element)?;
-        let number = u64::from(id.number);
-        let is_own = |e: &&Entity| e.id == number && e.kind.eq_ignore_ascii_case(id.kind.keyword());
-        let named = self.entities.iter().find(is_own).map(|e| e.entity.clone());
-        let own = named.unwrap_or_else(|| format!("{}_{number}", id.kind));
-        Some(format!("{own}{more}.{component}"))
-    }
-    /// Returns the index of the column of just this name, without regard to blanks and case.
-    fn find_named(&self, name: &str) -> Option<usize> {
-        let plain = |text: &str| {
-            text.chars()
-                .filter(|c| !c.is_whitespace())
-                .flat_map(char::to_lowercase)
-                .collect::<String>()
-        };
-        let exact = self.columns.iter().position(|c| c.name == name);
-        exact.or_else(|| {
-            let wanted = plain(name);
-            self.columns.iter().position(|c| plain(&c.name) == wanted)
-        })
-    }
-    /// Returns the values of the column with this name.
-    pub fn column(&self, name: &str) -> Option<&[f64]> {
-        self.find(name).map(|i| self.columns[i].values.as_slice())
-    }
 }
 
 #[cfg(test)]
@@ -546,7 +508,10 @@ mod tests {
             entity: "hinge".into(),
             kind: "Joint".into(),
             id: 2,
-            components: Vec::new(),
+            components: vec![Component {
+                name: "FX".into(),
+                column: 2,
+            }],
         });
         for (name, column) in [
             ("CONTACT_1.FX", Some(1)),

@@ -22,7 +22,7 @@ mod group;
 mod load;
 mod read;
 
-pub use apply::{Asked, Prepared, apply, check_loads, chosen_loads, prepare};
+pub use apply::{Asked, Prepared, apply, check_loads, chosen_loads, prepare, target_of};
 pub use function::{Ordinate, Shape, UserFunction};
 pub use group::{Group, Members, USER_DEFINED};
 pub use load::{Load, loads_of};
@@ -208,10 +208,15 @@ impl Setup {
         self.functions.iter().find(|f| f.name.text == name)
     }
 
-    /// Returns a mistake at a place of the file.
-    fn mistake(&self, span: Span, code: &'static str, message: impl Into<String>) -> Diagnostic {
-        let mut d = Diagnostic::error(code, message).at(&self.text, span);
+    /// Gives a mistake its place in the file.
+    fn placed(&self, span: Span, said: Diagnostic) -> Diagnostic {
+        let mut d = said.at(&self.text, span);
         d.file = Some(self.file.display().to_string());
         d
+    }
+
+    /// Returns a mistake at a place of the file.
+    fn mistake(&self, span: Span, code: &'static str, message: impl Into<String>) -> Diagnostic {
+        self.placed(span, Diagnostic::error(code, message))
     }
 }

@@ -196,7 +196,7 @@ fn columns_of_the_results_are_measured_by_their_names() {
     };
     let near = ask(&["max(abs(drop.XX))"]);
     assert!(
-        near.code == 3 && near.err.contains("columns of the results: drop.X"),
+        near.code == 3 && near.err.contains("did you mean drop.X"),
         "{}",
         near.err
     );

@@ -10,7 +10,7 @@ use crate::run::{self, Single};
 use crate::{Exit, complain_in_files, width};
 use crate::{Failure, configuration, draw, elements, interrupt, summary, verify as verifying};
 use cognate::analysis::session::script::obey;
-use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::session::{Analysis, Options, Session, check_column};
 use cognate::analysis::verify::verify;
 use cognate::analysis::work_limit::ProcessClock;
 use cognate::dataset::Reading;
@@ -95,6 +95,18 @@ impl Loaded {
             text += &format!(", up to {}\n", digits_of_six(session.time()));
         }
         text
+    }
+
+    /// Returns whether an expression that cannot be read alone is one of the model: it calls elements
+    /// by their names, or a component of results.
+    pub fn knows(&self, expression: &str) -> bool {
+        let model = &self.reading.model;
+        let is_named = model
+            .numbered(expression)
+            .map_or(true, |n| n.text != expression);
+        let is_letter = |c: char| c.is_alphabetic() || c == '_' || c == '\'';
+        let mut dots = expression.match_indices('.');
+        is_named || dots.any(|(at, _)| expression[..at].ends_with(is_letter))
     }
 
     /// Lists the elements of a kind, or all.
@@ -351,7 +363,7 @@ impl Loaded {
     /// Returns the mistakes in an expression: those of the check, which have places, else the
     /// others.
     fn mistaken(&self, expression: &str, others: Error) -> Failure {
-        let found = self.reading.model.check_expression(expression);
+        let found = check_column(&self.reading.model, expression);
         match found.is_empty() {
             true => others.into(),
             false => Failure {

@@ -3,14 +3,14 @@
 
 use super::commands::{COMMANDS, unknown_command, usage};
 use super::model::Loaded;
-use super::names::{Expansion, Names};
+use super::names::Names;
 use crate::eval::DialectName;
 use crate::formula::{Formula, Setting, derivative_names, give, times};
 use crate::{Failure, anatomy};
 use crate::{card, explain, plot, statements};
 use cognate::diagnostic::{Cause, Diagnostic};
 use cognate::expr::ast::Dialect;
-use cognate::expr::{Profile, parse, symbol};
+use cognate::expr::{Expansion, Profile, parse, symbol};
 use cognate::report::picture::{self, PictureFormat};
 use cognate::report::terminal::terminal;
 use cognate::report::{Curve, Plot, svg::svg};
@@ -179,7 +179,10 @@ impl Session {
         }
         match Formula::new(text, &self.setting) {
             Ok(formula) => !formula.is_given(&self.setting.data),
-            Err(d) => d.is(Cause::UnknownElement),
+            Err(d) => {
+                let model = self.model.as_ref();
+                d.is(Cause::UnknownElement) || model.is_some_and(|model| model.knows(text))
+            }
         }
     }
 

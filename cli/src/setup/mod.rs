@@ -6,7 +6,7 @@ pub mod edit;
 
 pub use cognate::setup::{
     Asked, Case, LAST_USED, Load, Members, Ordinate, Prepared, Setup, USER_DEFINED, UserFunction,
-    loads_of,
+    loads_of, target_of,
 };
 
 use super::{Exit, Failure, remark, run};

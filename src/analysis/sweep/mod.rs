@@ -354,6 +354,7 @@ impl Sweep {
         Options {
             columns,
             keep_start: true,
+            named_only: true,
             ..self.options.clone()
         }
     }

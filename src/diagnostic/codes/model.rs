@@ -522,6 +522,22 @@ was deleted, or is still to be written.
     JOINT/3, REVOLUTE, I=31, J=41      the markers that lie on each other",
     },
     Code {
+        name: "name_twice",
+        summary: "two elements of a kind have one name",
+        explanation: "\
+An element of a kind is called by its name at every door: in columns, by --only, in a sweep, in load cases. Two of one name are
+told apart by their numbers alone. Results give the further ones a number (`rod`, `rod_2`), so that no column is lost; a model
+that a program builds is refused, for there the name stands for the element. A notebook whose cell has run twice makes such
+models: begin the builder in the same cell.
+
+Markers may share a name on different parts, where `slider.tip` and `rod.tip` tell them apart.
+
+    ! adams_view_name='rod'
+    PART/2, MASS=1
+    ! adams_view_name='rod'
+    PART/3, MASS=1        name it otherwise",
+    },
+    Code {
         name: "stands_twice",
         summary: "two joints that are one",
         explanation: "\

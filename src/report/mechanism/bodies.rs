@@ -46,7 +46,7 @@ impl Bodies {
     /// directions, have no place.
     pub fn new(model: &Model) -> Self {
         let mut this = Self::default();
-        let mut index = BTreeMap::new();
+        let (mut index, labels) = (BTreeMap::new(), model.labels());
         for (id, part) in model.bodies() {
             let rotation = geometry::orientation(&part.orientation, part.qg);
             let placed = Frame {
@@ -63,7 +63,7 @@ impl Bodies {
             index.insert(id, this.all.len());
             this.all.push(Body {
                 id,
-                name: name_of(part.place.name.as_deref(), id),
+                name: labels.name(model, id),
                 is_ground,
                 colour,
                 placed: if is_ground { Frame::identity() } else { placed },
@@ -104,9 +104,4 @@ impl Bodies {
     pub fn find(&self, id: ElementId) -> Option<usize> {
         self.all.iter().position(|b| b.id == id)
     }
-}
-
-/// Returns the name of an element among results: that of the dataset, or `KEYWORD_number`.
-pub fn name_of(given: Option<&str>, id: ElementId) -> String {
-    given.map_or_else(|| format!("{}_{}", id.kind, id.number), str::to_owned)
 }

@@ -4,7 +4,6 @@
 //! data of the runs, as text: a description in JSON, then packed columns (`pack.rs`), all
 //! compressed. The viewer reads them with what browsers have; it runs from `file:`.
 
-use super::bodies::name_of;
 use super::channels::Channels;
 use super::pack::{Packed, base64};
 use super::{Form, Look, Pictured, Role, Track};
@@ -367,7 +366,7 @@ fn tree(model: &Model, pictured: &Pictured) -> Vec<Value> {
         (Family::Output, "outputs"),
         (Family::Data, "data"),
     ];
-    let mut all = Vec::new();
+    let (mut all, labels) = (Vec::new(), model.labels());
     for (family, title) in families {
         let of_family = |id: &ElementId| {
             id.kind.family() == family && id.kind != crate::model::ElementKind::Marker
@@ -377,7 +376,7 @@ fn tree(model: &Model, pictured: &Pictured) -> Vec<Value> {
             let ends = element.ends().map(|[i, j]| [body_of(i), body_of(j)]);
             list.push(json!({
                 "id": id.to_string(),
-                "name": name_of(element.place().name.as_deref(), id),
+                "name": labels.name(model, id),
                 "kind": kind(model, id),
                 "between": ends,
                 "inactive": model.inactive.contains(&id),

@@ -3,7 +3,7 @@
 //! Poses come from the columns of the run alone, those of the sets `…_XFORM`; a run that was read
 //! from a file of results does as well as one that has just been solved.
 
-use super::bodies::{Bodies, name_of};
+use super::bodies::Bodies;
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementId, Family, Model};
 use crate::results::{Entity, Kind, Run};
@@ -113,8 +113,9 @@ impl Track {
     fn loads(&mut self, model: &Model, run: &Run) {
         let acts = |id: &ElementId| matches!(id.kind.family(), Family::Force | Family::Constraint);
         let mut seen = BTreeSet::new();
-        for (element, of) in model.elements().into_iter().filter(|(id, _)| acts(id)) {
-            let name = name_of(of.place().name.as_deref(), element);
+        let labels = model.labels();
+        for (element, _) in model.elements().into_iter().filter(|(id, _)| acts(id)) {
+            let name = labels.name(model, element);
             let mut sets = run.entities.iter();
             let is_its = |e: &&Entity| {
                 e.id == u64::from(element.number) && (e.entity == name || e.name == name)
@@ -163,9 +164,11 @@ fn columns_of<const N: usize>(entity: &Entity, names: [&str; N]) -> Option<[usiz
 /// Returns the columns of the pose of a body: those of its set, or columns of such names.
 fn pose_columns(run: &Run, id: ElementId, name: &str) -> Option<[usize; 6]> {
     let set = format!("{name}_XFORM");
-    let is_its =
+    let is_its = |e: &&Entity| e.name == set || e.entity == name;
+    let is_alike =
         |e: &&Entity| e.name.eq_ignore_ascii_case(&set) || e.entity.eq_ignore_ascii_case(name);
     let of_name = run.entities.iter().filter(is_its);
+    let of_name = of_name.chain(run.entities.iter().filter(is_alike));
     // a file of another program may have names of its own; then the number tells
     let of_number = (run.entities.iter())
         .filter(|e| e.kind == "Part" && e.id == u64::from(id.number) && id.number > 0);
