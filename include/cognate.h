@@ -335,8 +335,8 @@ void cognate_names_free(CognateNames *names);
 // Returns options of which none is chosen.
 CognateOptions *cognate_options_new(void);
 
-// Asks for a further column: an expression of the function language, in which elements may have their
-// names ("DX(slider.cm, ground)"), or a component of a set of results ("crank_bearing.FX").
+// Asks for a further column: an expression of the function language, in which elements may have
+// their names ("DX(slider.cm, ground)"), or a component of a set of results ("crank_bearing.FX").
 bool cognate_options_column(CognateOptions *options, const char *expression, CognateError **error);
 
 // Chooses the permitted local error of the integration.
@@ -355,9 +355,9 @@ bool cognate_options_skip(CognateOptions *options, const char *keyword, CognateE
 // permitted error.
 void cognate_options_accuracy(CognateOptions *options, bool wanted);
 
-// Asks for sets of results of all elements, or for what is asked for alone. Without a word a session
-// has all of them where the dataset asks for RESULTS, or where no column and no REQUEST is asked for
-// (of a model of more than 400 elements then the places of the bodies).
+// Asks for sets of results of all elements, or for what is asked for alone. Without a word a
+// session has all of them where the dataset asks for RESULTS, or where no column and no REQUEST is
+// asked for (of a model of more than 400 elements then the places of the bodies).
 void cognate_options_full(CognateOptions *options, bool wanted);
 
 // Asks for positions and angles of all parts, whatever else is recorded.

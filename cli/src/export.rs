@@ -83,7 +83,7 @@ pub fn run(args: &Args) -> Outcome {
     let absent = loads
         .iter()
         .flat_map(|l| &l.left_out)
-        .filter_map(|l| setup::Load::named(&model, l).ok());
+        .filter_map(|l| setup::Load::of(&model, l).ok());
     let absent: Vec<setup::Load> = absent.collect();
     leave_out(&mut model, absent);
     let text = model.to_text();

@@ -52,8 +52,8 @@ pub struct MarkerMeasure {
 }
 
 impl MarkerMeasure {
-    /// Reads an expression, in which markers may have their names; `None`: it is something else than
-    /// one measure of markers.
+    /// Reads an expression, in which markers may have their names; `None`: it is something else
+    /// than one measure of markers.
     ///
     /// # Errors
     /// Names of no marker, or of several.

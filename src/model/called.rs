@@ -4,16 +4,17 @@
 //! |---|---|
 //! | `JOINT/3`, `1-CONTACT1` | keyword and number |
 //! | `3` | the number, where one kind of element is wanted |
-//! | `hinge`, `'front axle'` | the name that the dataset gives, in any case; of two that differ in case alone the one written so |
-//! | `JOINT_3`, `rod_2` | the name in results of an element without a name, or of a further one of a name |
+//! | `hinge`, `'front axle'` | the name that the dataset gives; in another case if it is the only one |
+//! | `JOINT_3`, `rod_2` | the name in results: without a name, or of a further one of a name |
 //! | `slider.tip`, `slider.MARKER_41` | a marker by its body and its own name |
-//! | `slider.cm` | the marker at the centre of mass, unless another marker of the body is called so |
+//! | `slider.cm` | the marker at the centre of mass, unless another is called so |
 //! | `.crank.slider` | a name as Adams View writes it, with or without the name of the model |
 //!
 //! Names of several elements are mistakes that list them; unknown ones are told with near names.
 
 use super::{ElementId, ElementKind, Labels, Model};
 use crate::diagnostic::{Cause, Diagnostic, Subject, near_names};
+use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
 /// Numbers, or names, of which none is left out of advice.
@@ -24,7 +25,7 @@ struct Names<'m> {
     model: &'m Model,
     /// kinds that are wanted; none: all
     kinds: &'m [ElementKind],
-    labels: Labels,
+    labels: OnceCell<Labels>,
 }
 
 impl Model {
@@ -59,11 +60,7 @@ impl Model {
         if let Some(id) = number.filter(|id| self.has(*id)) {
             return Ok(id);
         }
-        let names = Names {
-            model: self,
-            kinds,
-            labels: self.labels(),
-        };
+        let names = self.names_of(kinds);
         let called = names.called(text);
         if let [first, ..] = called[..] {
             return match called.len() {
@@ -75,6 +72,19 @@ impl Model {
             return Err(self.no_element(id));
         }
         Err(names.unknown(text))
+    }
+
+    /// Returns whether an element of some kinds, or several, have a name.
+    pub(crate) fn has_name(&self, kinds: &[ElementKind], text: &str) -> bool {
+        !self.names_of(kinds).called(unquoted(text)).is_empty()
+    }
+
+    fn names_of<'m>(&'m self, kinds: &'m [ElementKind]) -> Names<'m> {
+        Names {
+            model: self,
+            kinds,
+            labels: OnceCell::new(),
+        }
     }
 
     /// Says that an element is of another kind than is wanted.
@@ -156,8 +166,8 @@ impl Model {
 }
 
 impl Names<'_> {
-    /// Returns the elements that a text names. A name of Adams View begins with a dot, then with the
-    /// name of its model.
+    /// Returns the elements that a text names. A name of Adams View begins with a dot, then with
+    /// the name of its model.
     fn called(&self, text: &str) -> Vec<ElementId> {
         let inner = text.strip_prefix('.');
         let within = inner.and_then(|inner| inner.split_once('.'));
@@ -173,13 +183,18 @@ impl Names<'_> {
             return found;
         }
         let is_wanted = |id: &ElementId| self.kinds.is_empty() || self.kinds.contains(&id.kind);
-        let of_results = self.labels.element(text);
+        let of_results = self.labels().element(text);
         let of_results = of_results.or_else(|| default_name(text).filter(|id| self.model.has(*id)));
         match of_results.filter(is_wanted) {
             Some(id) => vec![id],
             None if is_wanted(&ElementKind::Marker.id(0)) => self.markers(text),
             None => Vec::new(),
         }
+    }
+
+    /// Returns the names in results, which are gathered when they are first asked for.
+    fn labels(&self) -> &Labels {
+        self.labels.get_or_init(|| self.model.labels())
     }
 
     /// Returns the kinds that are wanted.
@@ -229,7 +244,7 @@ impl Names<'_> {
             let (owner, own) = (unquoted(&text[..at]), unquoted(&text[at + 1..]));
             let mut owners = self.by_name(owner, &bodies);
             if owners.is_empty() {
-                let id = self.labels.element(owner).or_else(|| default_name(owner));
+                let id = self.labels().element(owner).or_else(|| default_name(owner));
                 let id = id.or_else(|| owner.parse().ok());
                 owners.extend(id.filter(|id| bodies.contains(&id.kind) && self.model.has(*id)));
             }
@@ -272,7 +287,7 @@ impl Names<'_> {
     fn several(&self, text: &str, called: &[ElementId]) -> Diagnostic {
         let apart = |id: &ElementId| match id.kind {
             ElementKind::Marker => format!("{id} ({})", self.model.marker_name(id.number)),
-            _ => match self.labels.name(self.model, *id) {
+            _ => match self.labels().name(self.model, *id) {
                 label if label == text => id.to_string(),
                 label => format!("{id} ({label})"),
             },
@@ -298,19 +313,18 @@ impl Names<'_> {
             .map(|(_, name)| name.to_owned())
             .collect();
         if wanted.contains(&ElementKind::Marker) && text.contains('.') {
-            let markers = self.model.markers.keys();
-            known.extend(markers.map(|&n| self.model.marker_name(n)));
-            for (id, part) in self.model.bodies().filter(|(_, part)| part.cm.is_some()) {
-                let centre = part
-                    .cm
-                    .map(|n| self.model.marker_name(n))
-                    .unwrap_or_default();
-                let body = self.labels.name(self.model, id);
-                known.push(format!("{body}.cm"));
-                known.retain(|name| *name != centre);
-            }
+            let with_centre = || self.model.bodies().filter(|(_, part)| part.cm.is_some());
+            let centres: BTreeSet<u32> = with_centre().filter_map(|(_, p)| p.cm).collect();
+            let others = self.model.markers.keys().filter(|n| !centres.contains(n));
+            known.extend(others.map(|&n| self.model.marker_name(n)));
+            let body = |id| self.labels().name(self.model, id);
+            known.extend(with_centre().map(|(id, _)| format!("{}.cm", body(id))));
         }
-        let near = near_names(text, known.iter().map(String::as_str));
+        let mut near = near_names(text, known.iter().map(String::as_str));
+        let all: Vec<&str> = self.named(ElementKind::ALL).map(|(_, name)| name).collect();
+        if near.is_empty() {
+            near = near_names(text, all.iter().copied());
+        }
         match (near.is_empty(), self.kinds) {
             (false, _) => d.help(format!("did you mean {}?", near.join(" or "))),
             (true, []) => d.help("name it as JOINT/3, or by the name that the dataset gives it"),

@@ -1,8 +1,8 @@
 //! Names of elements in results: the name that the dataset gives, or `JOINT_3` where it gives none.
 //!
 //! Two elements may have one name. The further ones have a number behind it there (`rod`, `rod_2`),
-//! so that no set of results has the name of another. Numbers depend on the model alone, not on what
-//! is recorded.
+//! so that no set of results has the name of another. Numbers depend on the model alone, not on
+//! what is recorded.
 
 use super::{ElementId, ElementKind, Family, Model};
 use std::collections::{BTreeMap, HashMap, HashSet};

@@ -2,10 +2,10 @@
 //!
 //! | name | is |
 //! |---|---|
-//! | `rod_XFORM.X`, `dx( 12,21 )` | the column, without regard to case and blanks; of two that differ in nothing else the one written so |
+//! | `rod_XFORM.X`, `dx( 12,21 )` | the column; with other case and blanks if it is the only one |
 //! | `crank_bearing.FX`, `'front axle'.FX` | the component of an element, by its name in results |
 //! | `JOINT/1.FX`, `1-CONTACT1.FX`, `PART/2_XFORM.X` | the same by keyword and number |
-//! | `slider.*`, `*.FX` | all columns of this pattern, or all components of the elements of this pattern |
+//! | `slider.*`, `*.FX` | all columns of this pattern, or all components of its elements |
 
 use super::{Entity, Run, word_of};
 use crate::diagnostic::{Diagnostic, near_names};

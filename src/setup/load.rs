@@ -53,12 +53,29 @@ impl Load {
         text.eq_ignore_ascii_case("gravity") || element.parse::<ElementId>().is_ok()
     }
 
-    /// Returns the load of a model that a user calls so: `gravity`; a motion, a force or a contact
-    /// by any of its names; `IC:arm`, the initial conditions of a joint, a part or a marker.
+    /// Returns the load of a model that a user calls so, and that acts: `gravity`; a motion, a
+    /// force or a contact by any of its names; `IC:arm`, the initial conditions of a joint, a part
+    /// or a marker.
     ///
     /// # Errors
     /// When the model has no such load, or several of the name.
     pub fn named(model: &Model, text: &str) -> Result<Self, Diagnostic> {
+        let load = Self::of(model, text)?;
+        match load.acts_in(model) {
+            true => Ok(load),
+            false => {
+                let what = format!("the model has no load {load}");
+                Err(Diagnostic::error("unknown_load", what))
+            }
+        }
+    }
+
+    /// Returns the load that a user calls so, as [`named`](Self::named) does, whether it acts or
+    /// not.
+    ///
+    /// # Errors
+    /// When the model has no such element, or several of the name.
+    pub fn of(model: &Model, text: &str) -> Result<Self, Diagnostic> {
         let text = text.trim();
         let (kinds, element) = match initial(text) {
             _ if text.eq_ignore_ascii_case("gravity") => (&[][..], ""),
@@ -70,14 +87,7 @@ impl Load {
             (_, Some(_)) => model.find_of(kinds, element).map(Load::Initial),
             (_, None) => model.find_of(kinds, element).map(Load::Element),
         };
-        let load = found.map_err(|d| no_load(model, kinds, (text, element), d))?;
-        match load.acts_in(model) {
-            true => Ok(load),
-            false => {
-                let what = format!("the model has no load {load}");
-                Err(Diagnostic::error("unknown_load", what))
-            }
-        }
+        found.map_err(|d| no_load(model, kinds, (text, element), d))
     }
 }
 
@@ -103,7 +113,7 @@ fn no_load(
                 Err(_) => format!("`{text}` is {id}: {what}"),
             })
         }
-        None if said.message.starts_with("several") => Diagnostic {
+        None if model.has_name(kinds, element) => Diagnostic {
             code: "unknown_load",
             ..said
         },

@@ -239,6 +239,8 @@ fn every_command_has_help_with_an_example() {
     let verbs: Vec<&str> = commands
         .lines()
         .filter_map(|l| l.split_whitespace().next())
+        // which prints the help of the others
+        .filter(|verb| *verb != "help")
         .collect();
     assert!(verbs.len() >= 5, "{verbs:?}");
     for verb in verbs {

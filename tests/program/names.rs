@@ -404,7 +404,7 @@ fn doors_that_take_elements_give_a_name_the_same_answer() {
     };
     assert_eq!(load("motor").as_deref(), Ok("MOTION/1"));
     assert_eq!(load(" GRAVITY").as_deref(), Ok("gravity"));
-    assert!(load("slider").unwrap_err().contains("is no load"));
+    assert!(load("arm.rod").unwrap_err().contains("is no load"));
     // components of elements are columns
     for (column, is_one) in [
         ("crank bearing.FX", true),

@@ -97,8 +97,8 @@ impl Loaded {
         text
     }
 
-    /// Returns whether an expression that cannot be read alone is one of the model: it calls elements
-    /// by their names, or a component of results.
+    /// Returns whether an expression that cannot be read alone is one of the model: it calls
+    /// elements by their names, or a component of results.
     pub fn knows(&self, expression: &str) -> bool {
         let model = &self.reading.model;
         let is_named = model

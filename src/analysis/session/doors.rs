@@ -73,8 +73,8 @@ impl Session {
     }
 
     /// Adds a column, by whose text the run then knows it: an expression of the function language,
-    /// in which elements may have their names (`DX(slider.cm, ground)`, see [`Model::numbered`]), or
-    /// a component of a set of results (`crank_bearing.FX`).
+    /// in which elements may have their names (`DX(slider.cm, ground)`, see [`Model::numbered`]),
+    /// or a component of a set of results (`crank_bearing.FX`).
     ///
     /// A session that is asked for no column records everything, as RESULTS does; with the first
     /// column it records what it is asked for.

@@ -288,9 +288,10 @@ impl Session {
     /// Computes what `USER(…)` stands for by a closure.
     ///
     /// `name` is an element ("SFORCE/3", or by its name), the text of its ROUTINE, or the first
-    /// number of `USER(…)`; `inputs` are expressions of the function language whose values the closure is
-    /// given, in this order. They may not depend on what it computes. See [`closures::Law`]
-    /// for what it has to fill in. Of several that stand for one `USER(…)` the last counts.
+    /// number of `USER(…)`; `inputs` are expressions of the function language whose values the
+    /// closure is given, in this order. They may not depend on what it computes. See
+    /// [`closures::Law`] for what it has to fill in. Of several that stand for one `USER(…)` the
+    /// last counts.
     pub fn register(
         &mut self,
         name: &str,

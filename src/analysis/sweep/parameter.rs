@@ -17,7 +17,7 @@ use crate::model::{ElementId, ElementKind, Formula, Model, Place};
 /// | `MARKER/21.QP(1)` | the first number of an argument that is a list |
 /// | `ACCGRAV.JGRAV` | an argument of a statement without a number |
 /// | `VARIABLE/3` | its FUNCTION, which becomes the number; of any statement that has one |
-/// | `slider.MASS`, `slider.cm.QP(1)`, `gain` | the same by the name of the element, see [`Model::find_of`] |
+/// | `slider.MASS`, `slider.cm.QP(1)`, `gain` | the same by the name of the element |
 ///
 /// Keywords may be abbreviated as in datasets. Numbers are in the units of the model, angles in
 /// radians.

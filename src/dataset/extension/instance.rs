@@ -21,7 +21,7 @@ pub(super) fn parts(model: &Model, name: &str) -> Result<Vec<u32>, Diagnostic> {
     match (members.is_empty(), part) {
         (false, _) => Ok(members),
         // several of the name
-        (true, Err(d)) if d.message.starts_with("several") => Err(d),
+        (true, Err(d)) if model.has_name(&[ElementKind::Part], name) => Err(d),
         (true, _) => Err(unknown(model, name)),
     }
 }
