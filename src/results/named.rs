@@ -111,7 +111,11 @@ impl Run {
     /// follows in the name of one of its sets or without.
     fn sets_of(&self, element: &str) -> Vec<&Entity> {
         let wanted = plain(element);
-        let called = |e: &&Entity| plain(&e.entity) == wanted || plain(&e.name) == wanted;
+        let variables = format!("{wanted}_variables");
+        let called = |e: &&Entity| {
+            let of_joint = e.kind == "Joint_Variables" && plain(&e.name) == variables;
+            of_joint || plain(&e.entity) == wanted || plain(&e.name) == wanted
+        };
         let called: Vec<&Entity> = self.entities.iter().filter(called).collect();
         if !called.is_empty() {
             return called;
