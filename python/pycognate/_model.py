@@ -146,7 +146,7 @@ class Model:
 
     Examples
     --------
-    >>> import cognate as cg
+    >>> import pycognate as cg
     >>> model = cg.Model.read("examples/slider_crank.adm")  # doctest: +SKIP
     >>> run = model.run(end=1.0, steps=200)  # doctest: +SKIP
     >>> run["slider.X"]  # doctest: +SKIP
@@ -178,6 +178,8 @@ class Model:
         ------
         ModelError
             Every mistake, with place and advice, in its `errors`.
+        FileNotFoundError
+            The file is not there; it is a ModelError, too.
         """
         return cls(_core.Model.read(path, setup))
 
@@ -437,7 +439,7 @@ class Model:
     def sweep(
         self, parameters: Mapping[str, Any], measures: str | Sequence[str], *args: Any, **options: Any
     ) -> SweepTable:
-        """Run the model again and again with other numbers; see `cognate.sweep`.
+        """Run the model again and again with other numbers; see `pycognate.sweep`.
 
         Parameters
         ----------
@@ -446,7 +448,7 @@ class Model:
         measures : str or sequence of str
             Numbers of each run: ``"max(abs(FX(41,11)))"``.
         *args, **options
-            As for `cognate.sweep`.
+            As for `pycognate.sweep`.
 
         Returns
         -------
@@ -707,7 +709,9 @@ class Session:
         return self._attended(progress, until, lambda report: self._core.simulate(simulation, report))
 
     def _obey(self, script: _core.Commands, progress: bool | Progress | None) -> str:
-        return self._attended(progress, None, lambda report: self._core.obey(script, report))
+        return self._attended(
+            progress, script.end, lambda report: self._core.obey(script, report)
+        )
 
     def _attended(
         self,
@@ -755,11 +759,13 @@ def run(path: str | os.PathLike[str], **options: Unpack[RunOptions]) -> Run:
     Raises
     ------
     ModelError
-        Mistakes in either file; a dataset that is not there.
+        Mistakes in either file.
+    FileNotFoundError
+        One of them is not there; it is a ModelError, too.
 
     Examples
     --------
-    >>> import cognate as cg
+    >>> import pycognate as cg
     >>> cg.run("examples/slider_crank.acf")["slider.X"]  # doctest: +SKIP
     """
     dataset = _core.Commands.read(path).model_file

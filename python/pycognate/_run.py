@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from ._columns import Columns
 from ._errors import ColumnError, Diagnostic, ResultsError
 
 if TYPE_CHECKING:
@@ -65,8 +66,8 @@ class Animation:
         return f"<Animation {self.title!r}: {len(self.html) // 1024} kB>"
 
 
-class Run(Mapping[str, NDArray[np.float64]]):
-    """Results of a run: a mapping from names of columns to arrays.
+class Run(Columns):
+    """Results of a run: columns by their names, a row for each output; `len` counts rows.
 
     Arrays are views of the memory of the run, without a copy; they cannot be written, and keep
     that memory alive. Names are found without regard to blanks and case. Runs can be pickled.
@@ -102,7 +103,7 @@ class Run(Mapping[str, NDArray[np.float64]]):
         return (self._columns[index][0] for index in self._table)
 
     def __len__(self) -> int:
-        return len(self._table)
+        return len(self.time)
 
     def _array(self, index: int) -> NDArray[np.float64]:
         if index not in self._arrays:
@@ -437,7 +438,7 @@ class Run(Mapping[str, NDArray[np.float64]]):
         record = self.record
         facts = [
             ("status", self.status + (f": {self.stop_reason}" if self.stop_reason else "")),
-            ("rows", f"{len(self.time)}"),
+            ("rows", f"{len(self)}"),
             ("columns", f"{len(self._table)} shown of {len(self._columns)}"),
             ("method", str(record.get("method", ""))),
             ("steps", str(record.get("steps", ""))),
@@ -451,13 +452,7 @@ class Run(Mapping[str, NDArray[np.float64]]):
         return f"<table><caption>{html.escape(self.title or self.name)}</caption>{rows}</table>"
 
     def __repr__(self) -> str:
-        return f"<Run {self.name!r}: {self.status}, {len(self.time)} rows, {len(self)} columns>"
-
-    def __eq__(self, other: object) -> bool:
-        return self is other
-
-    def __hash__(self) -> int:
-        return id(self)
+        return f"<Run {self.name!r}: {self.status}, {len(self)} rows, {len(self._table)} columns>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         model = None if self._model is None else (self._model.text, self._model.file)
@@ -486,6 +481,8 @@ def read_results(path: str | os.PathLike[str]) -> Run:
     ------
     ResultsError
         A file that cannot be read, with the line.
+    FileNotFoundError
+        The file is not there; it is a ResultsError, too.
     """
     return Run(_core.Results.read(path))
 

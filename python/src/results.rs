@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 use std::path::PathBuf;
 
 /// The results of a run, which no longer change.
-#[pyclass(module = "cognate._core", frozen)]
+#[pyclass(module = "pycognate._core", frozen)]
 pub struct Results {
     run: Run,
     /// the record as JSON

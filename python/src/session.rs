@@ -10,7 +10,7 @@ use cognate::analysis::linear::Wanted;
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::state::Saved;
 use cognate::analysis::session::{self, Options};
-use cognate::dataset::command::{Script, Simulate, SimulationKind, Step};
+use cognate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use cognate::model::{ElementKind, SettingsStatement};
 use cognate::results::{Event, Status, json};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -116,7 +116,7 @@ impl Simulation {
 }
 
 /// A model and its clock.
-#[pyclass(module = "cognate._core", frozen)]
+#[pyclass(module = "pycognate._core", frozen)]
 pub struct Session {
     model: Py<Model>,
     session: Mutex<session::Session>,
@@ -278,7 +278,7 @@ pub fn check_columns(py: Python<'_>, model: &Model, columns: &[String]) -> PyRes
 }
 
 /// Commands of a file or a text.
-#[pyclass(module = "cognate._core", frozen)]
+#[pyclass(module = "pycognate._core", frozen)]
 pub struct Commands {
     script: Script,
 }
@@ -317,6 +317,24 @@ impl Commands {
     #[getter]
     fn model_file(&self) -> Option<PathBuf> {
         self.script.model_file()
+    }
+
+    /// The time at which the last simulation ends, where all say it.
+    #[getter]
+    fn end(&self) -> Option<f64> {
+        let simulations = self
+            .script
+            .steps
+            .iter()
+            .filter_map(|step| match &step.command {
+                Command::Simulate(simulate) => Some((simulate.end, simulate.duration)),
+                _ => None,
+            });
+        let mut last = Some(0.0);
+        for (end, duration) in simulations {
+            last = end.or_else(|| Some(last? + duration?)).or(last);
+        }
+        last.filter(|&end| end > 0.0)
     }
 
     /// The base name of results that the file gives.

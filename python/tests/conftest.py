@@ -3,7 +3,7 @@
 import signal
 from pathlib import Path
 
-import cognate as cg
+import pycognate as cg
 import pytest
 
 ROOT = Path(__file__).parents[2]
