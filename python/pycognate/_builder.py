@@ -79,7 +79,8 @@ class Element:
                 self._model._core.flag(self._core, name)
                 continue
             plain = _plain(setting, self._model)
-            rows = plain if isinstance(plain, list) and plain and isinstance(plain[0], list) else [plain]
+            is_table = isinstance(plain, list) and len(plain) > 0 and isinstance(plain[0], list)
+            rows = plain if is_table else [plain]
             for row in rows:
                 self._model._core.set(self._core, name, row)
         return self
@@ -383,7 +384,7 @@ class ModelBuilder(Words):
         else:
             core = self._core.add(word, name)
         keyword = core.element.split("/")[0]
-        classes = {"PART": Body, "POINT_MASS": Body, "MARKER": Marker}
+        classes: dict[str, type[Element]] = {"PART": Body, "POINT_MASS": Body, "MARKER": Marker}
         element = classes.get(keyword, Element)(self, core)
         element.set(**{key: x for key, x in given.items() if x is not None and x is not False})
         return element

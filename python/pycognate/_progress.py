@@ -15,6 +15,16 @@ Progress = Callable[[float], object]
 
 #: Work that is done sooner shows no bar [s].
 _QUIET_FOR = 0.5
+#: Share of the work from which on the rest of its time is estimated.
+_ENOUGH_DONE = 0.01
+
+
+def _duration(seconds: float) -> str:
+    """Return a time in the unit in which people say it."""
+    for size, unit in ((3600.0, "h"), (60.0, "min")):
+        if seconds >= 2.0 * size:
+            return f"{seconds / size:.0f} {unit}"
+    return f"{seconds:.0f} s"
 
 
 class _Bar:
@@ -46,8 +56,8 @@ class _Bar:
             bar = f'<progress value="{done:.4f}"></progress>'
             share = f"{done:4.0%} "
             words += f" of {self._end:.4g}"
-            if done > 0.0:
-                words += f", {elapsed * (1.0 - done) / done:.0f} s to go"
+            if done >= _ENOUGH_DONE:
+                words += f", {_duration(elapsed * (1.0 - done) / done)} to go"
         return {"text/html": f"{bar} {share}{html.escape(words)}", "text/plain": share + words}
 
     def close(self) -> None:

@@ -35,7 +35,8 @@ def test_notebook_runs(path):
 BAR = """
 import pycognate as cg
 
-model = cg.Model.from_text('''{text}'''{change})
+cg._progress._QUIET_FOR = {quiet}
+model = cg.Model.from_text({text!r})
 run = model.run(end={end}, steps={steps})
 print(run.status)
 """
@@ -55,7 +56,7 @@ def displayed(code):
             return super().process_message(msg, cell, cell_index)
 
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(code)])
-    Watching(notebook, timeout=120, kernel_name="python3").execute()
+    Watching(notebook, timeout=120, startup_timeout=120, kernel_name="python3").execute()
     texts = [output.get("text", "") for output in notebook.cells[0].outputs]
     return "".join(texts).strip(), shown
 
@@ -63,7 +64,7 @@ def displayed(code):
 @pytest.mark.filterwarnings("default")
 def test_a_long_run_shows_a_bar_in_a_notebook_that_moves_and_goes():
     code = BAR.replace("steps={steps}", "steps=10, limit=3.0")
-    status, shown = displayed(code.format(text=SWINGING, change="", end=1e9))
+    status, shown = displayed(code.format(text=SWINGING, end=1e9, quiet=0.5))
     assert status == "limit"
     bars = [data["text/html"] for data in shown]
     assert len(bars) >= 3 and all("<progress" in bar for bar in bars[:-1]) and bars[-1] == ""
@@ -72,5 +73,5 @@ def test_a_long_run_shows_a_bar_in_a_notebook_that_moves_and_goes():
 
 @pytest.mark.filterwarnings("default")
 def test_a_short_run_shows_nothing_in_a_notebook():
-    status, shown = displayed(BAR.format(text=FALLING, change="", end=0.01, steps=2))
+    status, shown = displayed(BAR.format(text=FALLING, end=0.01, steps=2, quiet=60))
     assert status == "completed" and shown == []
