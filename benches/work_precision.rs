@@ -49,6 +49,7 @@ fn study(problem: &str, budget: f64) -> Study {
         folders: Vec::new(),
         requests: requests_made().collect(),
         methods: Vec::new(),
+        wanted: WANTED.to_vec(),
         budget,
         trusted: Some(trusted),
     };

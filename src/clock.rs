@@ -29,31 +29,65 @@ mod reading {
     }
 }
 
-/// The clock of the processor, where the system answers in one question.
+/// The clocks of the processor, where the system has them.
 #[cfg(feature = "solver")]
 mod processor {
-    /// Returns the processor time that this process has used, in s.
-    #[cfg(all(feature = "native", target_os = "linux", target_pointer_width = "64"))]
-    pub fn process_seconds() -> Option<f64> {
-        // SAFETY: the signature is that of time.h; any thread may ask at any time.
-        #[allow(unsafe_code)]
-        unsafe extern "C" {
-            safe fn clock() -> std::ffi::c_long;
-        }
-        // CLOCKS_PER_SEC is a million by POSIX; -1: the system does not tell
-        let microseconds = clock();
-        (microseconds >= 0).then_some(1e-6 * microseconds as f64)
+    use super::Duration;
+
+    /// Returns the processor time that this process has used.
+    pub fn process_time() -> Option<Duration> {
+        reading::process_time()
     }
 
-    /// Returns nothing: nobody answers.
-    #[cfg(not(all(feature = "native", target_os = "linux", target_pointer_width = "64")))]
-    pub fn process_seconds() -> Option<f64> {
-        None
+    /// Returns the processor time that the thread that asks has used.
+    pub fn thread_time() -> Option<Duration> {
+        reading::thread_time()
+    }
+
+    #[cfg(any(
+        target_os = "linux",
+        target_os = "android",
+        target_os = "freebsd",
+        target_vendor = "apple"
+    ))]
+    mod reading {
+        use super::Duration;
+        use rustix::time::{ClockId, clock_gettime};
+
+        fn time(clock: ClockId) -> Option<Duration> {
+            Duration::try_from(clock_gettime(clock)).ok()
+        }
+
+        pub fn process_time() -> Option<Duration> {
+            time(ClockId::ProcessCPUTime)
+        }
+
+        pub fn thread_time() -> Option<Duration> {
+            time(ClockId::ThreadCPUTime)
+        }
+    }
+
+    #[cfg(not(any(
+        target_os = "linux",
+        target_os = "android",
+        target_os = "freebsd",
+        target_vendor = "apple"
+    )))]
+    mod reading {
+        use super::Duration;
+
+        pub fn process_time() -> Option<Duration> {
+            None
+        }
+
+        pub fn thread_time() -> Option<Duration> {
+            None
+        }
     }
 }
 
 #[cfg(feature = "solver")]
-pub(crate) use processor::process_seconds;
+pub(crate) use processor::{process_time, thread_time};
 
 /// A moment on a clock that does not go back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -134,18 +168,22 @@ mod tests {
 
     #[cfg(feature = "solver")]
     #[test]
-    fn work_uses_processor_time() {
-        let Some(begin) = process_seconds() else {
+    fn work_uses_processor_time_and_waiting_uses_none() {
+        let (Some(process), Some(thread)) = (process_time(), thread_time()) else {
             return;
         };
-        let moment = Moment::now();
-        while process_seconds().is_some_and(|now| now < begin + 1e-3) {
+        let (moment, millisecond) = (Moment::now(), Duration::from_millis(1));
+        let since = |now: Option<Duration>, begin: Duration| now.unwrap_or_default() - begin;
+        while since(thread_time(), thread) < millisecond {
             assert!(moment.elapsed() < Duration::from_secs(60), "time is told");
         }
-        // no more than all threads can have used
-        let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
-        let most = (threads as f64 + 1.0) * moment.elapsed().as_secs_f64() + 0.01;
-        assert!(process_seconds().is_some_and(|now| now < begin + most));
+        // a thread uses no more than passes, the process at least what the thread uses
+        assert!(since(thread_time(), thread) <= moment.elapsed());
+        assert!(since(process_time(), process) >= millisecond);
+        // clocks of threads do not tick while these sleep
+        let thread = thread_time().unwrap_or_default();
+        std::thread::sleep(Duration::from_millis(30));
+        assert!(since(thread_time(), thread) < Duration::from_millis(15));
     }
 
     #[test]

@@ -6,8 +6,8 @@ pub enum Encoding {
     /// UTF-8, with or without a byte order mark, which is then the first character
     #[default]
     Utf8,
-    /// a byte per character
-    Latin1,
+    /// a byte per character: Latin-1 with the euro, dashes and curved quotes of Windows
+    Windows1252,
     /// two bytes per character, the lower one first or last
     Utf16 {
         /// the higher byte stands first
@@ -20,7 +20,7 @@ impl Encoding {
     ///
     /// UTF-16 is known by its byte order mark, or, without one, by zero bytes beside the first
     /// characters, which are plain letters in any dataset. Bytes that would not come back as they
-    /// were are taken as Latin-1.
+    /// were are taken as Windows-1252.
     pub(crate) fn of(bytes: &[u8]) -> Self {
         let wide = |big_endian| Encoding::Utf16 { big_endian };
         let guess = match *bytes {
@@ -29,7 +29,7 @@ impl Encoding {
             [a, 0, b, 0, ..] if a > 0 && b > 0 => wide(false),
             [0, a, 0, b, ..] if a > 0 && b > 0 => wide(true),
             _ if std::str::from_utf8(bytes).is_ok() => Encoding::Utf8,
-            _ => Encoding::Latin1,
+            _ => Encoding::Windows1252,
         };
         if guess == Encoding::Utf8 {
             return guess;
@@ -37,14 +37,16 @@ impl Encoding {
         match guess.decode(bytes) {
             Some(text) if guess.encode(&text) == bytes => guess,
             _ if std::str::from_utf8(bytes).is_ok() => Encoding::Utf8,
-            _ => Encoding::Latin1,
+            _ => Encoding::Windows1252,
         }
     }
 
+    /// Returns the text of bytes; `None`: they are none of this encoding. A byte order mark is its
+    /// first character.
     pub(crate) fn decode(self, bytes: &[u8]) -> Option<String> {
         match self {
             Encoding::Utf8 => std::str::from_utf8(bytes).ok().map(str::to_owned),
-            Encoding::Latin1 => Some(bytes.iter().map(|&b| b as char).collect()),
+            Encoding::Windows1252 => Some(bytes.iter().map(|&b| letter(b)).collect()),
             Encoding::Utf16 { big_endian } => {
                 let (pairs, rest) = bytes.as_chunks::<2>();
                 let number = if big_endian {
@@ -58,10 +60,14 @@ impl Encoding {
         }
     }
 
+    /// Returns the bytes of a text; in UTF-8 if it has letters that this encoding lacks.
     pub(crate) fn encode(self, text: &str) -> Vec<u8> {
+        let utf8 = || text.as_bytes().to_vec();
         match self {
-            Encoding::Latin1 if text.chars().all(|c| (c as u32) < 256) => {
-                text.chars().map(|c| c as u8).collect()
+            Encoding::Utf8 => utf8(),
+            Encoding::Windows1252 => {
+                let bytes: Option<Vec<u8>> = text.chars().map(byte).collect();
+                bytes.unwrap_or_else(utf8)
             }
             Encoding::Utf16 { big_endian } => {
                 let bytes = |unit: u16| match big_endian {
@@ -70,8 +76,31 @@ impl Encoding {
                 };
                 text.encode_utf16().flat_map(bytes).collect()
             }
-            Encoding::Utf8 | Encoding::Latin1 => text.as_bytes().to_vec(),
         }
+    }
+}
+
+/// Letters of the bytes 0x80 to 0x9F in Windows-1252, which differs from Latin-1 in these alone. A
+/// library for them would bring the letters of East Asia and four libraries of its own.
+const WINDOWS: [char; 32] = [
+    '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}',
+    '\u{90}', '‘', '’', '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
+];
+
+/// Returns the letter of a byte in Windows-1252.
+fn letter(byte: u8) -> char {
+    let place = usize::from(byte).checked_sub(0x80);
+    let windows = place.and_then(|place| WINDOWS.get(place));
+    windows.copied().unwrap_or(char::from(byte))
+}
+
+/// Returns the byte of a letter in Windows-1252; `None`: it has none.
+fn byte(letter: char) -> Option<u8> {
+    match WINDOWS.iter().position(|&windows| windows == letter) {
+        Some(place) => u8::try_from(0x80 + place).ok(),
+        None => u8::try_from(letter)
+            .ok()
+            .filter(|b| !(0x80..0xA0).contains(b)),
     }
 }
 
@@ -113,5 +142,17 @@ mod tests {
             assert_eq!(String::from_utf8(as_utf8(bytes)).as_deref(), Ok(text));
         }
         assert!(as_utf8(Vec::new()).is_empty());
+    }
+
+    #[test]
+    fn every_byte_is_a_letter_and_comes_back() {
+        let all: Vec<u8> = (1..=255).collect();
+        assert_eq!(Encoding::of(&all), Encoding::Windows1252);
+        let text = Encoding::Windows1252.decode(&all).expect("a letter each");
+        assert_eq!(text.chars().count(), all.len());
+        assert!(text.contains("€") && text.contains("„") && text.contains("ÿ"));
+        assert_eq!(Encoding::Windows1252.encode(&text), all);
+        // a letter that it lacks
+        assert_eq!(Encoding::Windows1252.encode("Ω"), "Ω".as_bytes());
     }
 }

@@ -20,14 +20,15 @@
 //! | evaluate it often, with derivatives | [`expr::Evaluator`] |
 //! | give it variables and functions of one's own | [`expr::Names`] |
 //! | write a formula once, for values, derivatives, rates, batches | [`scalar::Scalar`] |
-//! | read a model | `Model::read` |
-//! | make a model | `ModelBuilder` |
-//! | simulate it, read the results | `Session` |
-//! | run it many times | `analysis::sweep` |
-//! | count its freedoms, find its modes | `analysis::verify`, `analysis::linear` |
-//! | check a dataset, write it in a regular form | `dataset` |
-//! | read and write results | `results` |
-//! | integrate equations of your own | `numeric` |
+//! | read a model | [`Model::read`] |
+//! | make a model | [`ModelBuilder`] |
+//! | simulate it, read the results | [`Session`] |
+//! | run it many times | [`analysis::sweep`] |
+//! | count its freedoms, find its modes | [`analysis::verify`], [`analysis::linear`] |
+//! | check a dataset, write it in a regular form | [`dataset`] |
+//! | read and write results | [`results`] |
+//! | integrate equations of your own | [`numeric`] |
+//! | give files that are not on a disk | [`disk::give`] |
 //! | tell a mistake to a user | [`Error`], [`diagnostic::Diagnostic`] |
 //!
 //! # Programs
@@ -175,7 +176,7 @@
 //! Mistakes of a caller are an [`Error`]: all of them at once, each with a code (which
 //! `cognate explain CODE` explains), place, element by name, and advice. It is a
 //! [`std::error::Error`], prints completely, and works with `?`. What happens in numbers is no
-//! error but a `Status` (`results::Status`) with the results so far: the time, the step and the
+//! error but a [`results::Status`] with the results so far: the time, the step and the
 //! name of the worst row. Nothing that is passed to the library makes it panic.
 //!
 //! # Conventions
@@ -188,7 +189,7 @@
 //!
 //! | feature | brings |
 //! |---|---|
-//! | none | the evaluator: `expr`, `scalar`, `space`; no linear algebra in its dependency tree |
+//! | none | the evaluator: [`expr`], [`scalar`], [`space`]; no linear algebra in its dependency tree |
 //! | `native` | code of the processor for programs that run often (x86-64 under Linux) |
 //! | `solver` | models, their simulation, results |
 //! | `geometry` | contacts of convex solids, by parry |
@@ -216,7 +217,40 @@
 //! 1  expr  space  numeric       the language; frames; methods and linear algebra
 //! 0  clock  scalar  diagnostic  time that passes; numbers; messages and places
 //! ```
-
+//!
+// without `solver` there is nothing to link to but the feature
+#![cfg_attr(
+    feature = "solver",
+    doc = "
+[`Model::read`]: crate::Model::read
+[`ModelBuilder`]: crate::ModelBuilder
+[`Session`]: crate::Session
+[`analysis::sweep`]: crate::analysis::sweep
+[`analysis::verify`]: crate::analysis::verify
+[`analysis::linear`]: crate::analysis::linear
+[`dataset`]: crate::dataset
+[`results`]: crate::results
+[`numeric`]: crate::numeric
+[`disk::give`]: crate::disk::give
+[`results::Status`]: crate::results::Status
+"
+)]
+#![cfg_attr(
+    not(feature = "solver"),
+    doc = "
+[`Model::read`]: #features
+[`ModelBuilder`]: #features
+[`Session`]: #features
+[`analysis::sweep`]: #features
+[`analysis::verify`]: #features
+[`analysis::linear`]: #features
+[`dataset`]: #features
+[`results`]: #features
+[`numeric`]: #features
+[`disk::give`]: #features
+[`results::Status`]: #features
+"
+)]
 #![warn(missing_docs)]
 // without generated code there is no unsafe Rust; with it, where it is allowed by name (see
 // fuzz/README.md)
@@ -236,9 +270,10 @@ struct Readme;
 pub mod clock;
 pub mod diagnostic;
 #[cfg(feature = "solver")]
-mod disk;
+pub mod disk;
 #[cfg(feature = "solver")]
 pub mod encoding;
+mod random;
 pub mod scalar;
 
 pub use diagnostic::Error;

@@ -1,10 +1,12 @@
-//! Real files, read where they lie: the folder named by COGNATE_CORPUS. Without it the tests say that they were skipped.
+//! Real files, read where they lie: the folder named by COGNATE_CORPUS. Without it the tests are left out.
 #![cfg(feature = "solver")]
 
 #[path = "corpus/chrono.rs"]
 mod chrono;
 #[path = "common/meaning.rs"]
 mod meaning;
+#[path = "common/needs.rs"]
+mod needs;
 #[path = "common/running.rs"]
 mod running;
 #[path = "corpus/runs.rs"]
@@ -20,14 +22,11 @@ use cognate::model::Model;
 use meaning::{difference, meaning};
 use std::path::{Path, PathBuf};
 
-/// All files of the corpus with this ending, in order of their names; `None` (and a line) without a corpus.
+/// All files of the corpus with this ending, in order of their names; `None` without a corpus.
+#[track_caller]
 fn corpus(ending: &str) -> Option<Vec<PathBuf>> {
-    let Some(root) = std::env::var_os("COGNATE_CORPUS") else {
-        println!("skipped: COGNATE_CORPUS is not set");
-        return None;
-    };
     let mut found = Vec::new();
-    let mut folders = vec![PathBuf::from(root)];
+    let mut folders = vec![needs::corpus()?];
     while let Some(folder) = folders.pop() {
         let entries =
             std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));

@@ -4,6 +4,10 @@
 mod api;
 #[path = "house/codes.rs"]
 mod codes;
+#[path = "house/pages.rs"]
+mod pages;
+#[path = "house/sentences.rs"]
+mod sentences;
 #[path = "house/source.rs"]
 mod source;
 

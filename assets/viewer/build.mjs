@@ -1,6 +1,7 @@
-// Bundles the viewer and compresses it: writes ../viewer.js.gz, which is a part of the program.
-// With --check it only says whether that file holds what these sources make.
+// Bundles the viewer and compresses it: writes ../viewer.js.gz, which is a part of the program, and ../viewer.sha256, by which
+// pages know their own script. With --check it only says whether these files hold what these sources make.
 import { buildSync } from 'esbuild';
+import { createHash } from 'node:crypto';
 import { gzipSync, gunzipSync } from 'node:zlib';
 import { readFileSync, writeFileSync } from 'node:fs';
 
@@ -20,16 +21,19 @@ const { outputFiles } = buildSync({
   loader: { '.css': 'text' },
   write: false,
 });
-const made = Buffer.from(outputFiles[0].contents);
-const file = here + '../viewer.js.gz';
+// inside a script nothing may look like its end
+const made = Buffer.from(outputFiles[0].text.replaceAll('</script', '<\\/script'));
+const hash = `${createHash('sha256').update(made).digest('base64')}\n`;
+const [file, hashFile] = ['viewer.js.gz', 'viewer.sha256'].map((name) => `${here}../${name}`);
 if (process.argv.includes('--check')) {
   const kept = gunzipSync(readFileSync(file));
-  if (!kept.equals(made)) {
-    console.error('assets/viewer.js.gz is not what its sources make: run npm run build in assets/viewer');
+  if (!kept.equals(made) || readFileSync(hashFile, 'utf8') !== hash) {
+    console.error('assets/viewer.js.gz, or its hash, is not what its sources make: run npm run build in assets/viewer');
     process.exit(1);
   }
 } else {
   const packed = gzipSync(made, { level: 9 });
   writeFileSync(file, packed);
+  writeFileSync(hashFile, hash);
   console.log(`${made.length} bytes, ${packed.length} compressed`);
 }

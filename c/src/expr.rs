@@ -32,7 +32,10 @@ pub fn dialect_of(dialect: u32) -> Result<Dialect, Error> {
     match dialect {
         d if d == CognateDialect::Function as u32 => Ok(Dialect::Function),
         d if d == CognateDialect::Expression as u32 => Ok(Dialect::Expression),
-        _ => Err(usage("dialect is none of them", "see CognateDialect")),
+        _ => Err(usage(
+            format!("{dialect} is no dialect"),
+            "the dialects are COGNATE_DIALECT_FUNCTION and COGNATE_DIALECT_EXPRESSION",
+        )),
     }
 }
 
@@ -58,7 +61,10 @@ impl CognateExpr {
         if n == wanted {
             return Ok(());
         }
-        let what = format!("{n} inputs are given, the expression reads {wanted}");
+        let what = format!(
+            "the expression reads {}, not {n}",
+            engine::diagnostic::counted(wanted, "input")
+        );
         Err(usage(what, "cognate_expr_input names them, in their order"))
     }
 }

@@ -10,15 +10,19 @@
 //! expr.rs        expressions
 //! names.rs       variables, constants, functions of a caller's own in them
 //! model.rs       datasets
+//! builder.rs     models that a program makes
 //! options.rs     choices of a session
 //! session.rs     simulations, columns, files, state
+//! rows.rs        rows of results while a simulation goes on
 //! routines.rs    USER as C callbacks with Adams' argument lists
 //! utilities.rs   SYSFNC and SYSARY, which those call
 //! library.rs     a user's library, loaded at run time
+//! version.rs     the version, as a text and as numbers
 //! ```
 //!
 //! `unsafe` stands where a pointer of the caller is followed, and where a callback is called.
 
+mod builder;
 mod door;
 mod error;
 mod expr;
@@ -27,17 +31,16 @@ mod model;
 mod names;
 mod options;
 mod routines;
+mod rows;
 mod session;
 mod utilities;
+mod version;
+
+pub use version::{
+    COGNATE_VERSION_MAJOR, COGNATE_VERSION_MINOR, COGNATE_VERSION_NUMBER, COGNATE_VERSION_PATCH,
+};
 
 use std::ffi::{CString, c_char};
-
-/// Returns the version of the library: "0.1.0".
-#[unsafe(no_mangle)]
-pub extern "C" fn cognate_version() -> *const c_char {
-    const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");
-    VERSION.as_ptr().cast()
-}
 
 /// Gives back a text that a function returned as `char *`; NULL is taken as well.
 #[unsafe(no_mangle)]

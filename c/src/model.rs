@@ -26,7 +26,11 @@ pub struct CognateModel {
 }
 
 impl CognateModel {
-    fn of(reading: Reading, setup: Setup) -> Result<*mut Self, Error> {
+    /// Returns the handle of a model that has been read, with its set-up.
+    ///
+    /// # Errors
+    /// Mistakes in either.
+    pub fn of(reading: Reading, setup: Setup) -> Result<*mut Self, Error> {
         let Reading {
             dataset,
             mut model,

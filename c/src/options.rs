@@ -10,7 +10,8 @@ use std::ffi::c_char;
 /// Choices of a session. What is not chosen is as the dataset says.
 pub struct CognateOptions {
     pub(crate) options: Options,
-    /// whether columns of all parts and joints are wanted; `None`: if the dataset asks for RESULTS
+    /// whether columns of all parts and joints are wanted; `None`: where the dataset asks for
+    /// RESULTS, or nothing is asked for
     pub(crate) full: Option<bool>,
     pub(crate) name: String,
 }
@@ -59,7 +60,8 @@ pub extern "C" fn cognate_options_new() -> *mut CognateOptions {
     quiet(std::ptr::null_mut(), || Box::into_raw(Box::default()))
 }
 
-/// Asks for a further column: any expression of the function language.
+/// Asks for a further column: an expression of the function language, in which elements may have
+/// their names ("DX(slider.cm, ground)"), or a component of a set of results ("crank_bearing.FX").
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_options_column(
     options: *mut CognateOptions,
@@ -146,7 +148,9 @@ pub unsafe extern "C" fn cognate_options_accuracy(options: *mut CognateOptions, 
     unsafe { set(options, |o| o.options.accuracy = wanted) }
 }
 
-/// Asks for sets of results of all elements, or for none of them.
+/// Asks for sets of results of all elements, or for what is asked for alone. Without a word a
+/// session has all of them where the dataset asks for RESULTS, or where no column and no REQUEST is
+/// asked for (of a model of more than 400 elements then the places of the bodies).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_options_full(options: *mut CognateOptions, wanted: bool) {
     // SAFETY: NULL or a handle

@@ -4,11 +4,12 @@ use crate::door::{door, given, quiet, seen, text, usage, words};
 use crate::error::CognateError;
 use crate::model::{CognateModel, commands, located};
 use crate::options::CognateOptions;
+use crate::rows::Message;
 use engine::Error;
 use engine::analysis::linear::Wanted;
 use engine::analysis::session::script::obey;
 use engine::analysis::session::state::Saved;
-use engine::analysis::session::{Options, Session};
+use engine::analysis::session::{Options, Session, check_column};
 use engine::analysis::watch::Watch;
 use engine::dataset::Dataset;
 use engine::dataset::command::{Simulate, SimulationKind};
@@ -22,6 +23,7 @@ use engine::results::{self, Event, Status, json};
 use std::ffi::{CString, c_char, c_void};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 /// A model and its clock: simulations one after another, each from where the last one ended.
@@ -39,6 +41,12 @@ pub struct Inner {
     /// what a routine has done wrong
     pub failure: Failure,
     progress: Option<Progress>,
+    /// every column has bars of error
+    pub has_bars: bool,
+    /// the receiver of rows has had enough of them
+    pub enough: Arc<AtomicBool>,
+    /// the reader that is told when a simulation has ended
+    pub reader: Option<Sender<Message>>,
     /// names and units of columns, for C
     columns: Vec<(CString, CString)>,
     /// libraries whose routines it calls; they go after the session, which is declared above them
@@ -89,6 +97,7 @@ unsafe impl Send for Progress {}
 /// The hooks of a simulation.
 struct Watcher<'a> {
     interrupted: &'a AtomicBool,
+    enough: Arc<AtomicBool>,
     failure: Failure,
     progress: Option<Progress>,
     stop: bool,
@@ -96,7 +105,8 @@ struct Watcher<'a> {
 
 impl Watch for Watcher<'_> {
     fn interrupted(&mut self) -> bool {
-        self.stop || self.failure.is_set() || self.interrupted.load(Ordering::Relaxed)
+        let is_set = |flag: &AtomicBool| flag.load(Ordering::Relaxed);
+        self.stop || self.failure.is_set() || is_set(self.interrupted) || is_set(&self.enough)
     }
     fn progress(&mut self, t: f64, _h: f64, _stats: &Stats) {
         if let Some(Progress { callback, data }) = self.progress {
@@ -135,7 +145,7 @@ pub enum CognateStatus {
     Stopped,
     /// a limit of time or steps was reached
     Limit,
-    /// cognate_session_interrupt or the progress callback ended it
+    /// cognate_session_interrupt, or the callback for progress or for rows, ended it
     Interrupted,
 }
 
@@ -181,15 +191,21 @@ impl Inner {
         go: impl FnOnce(&mut Session, &mut Watcher<'_>) -> Result<Status, Error>,
     ) -> Result<Status, Error> {
         interrupted.store(false, Ordering::Relaxed);
+        self.enough.store(false, Ordering::Relaxed);
         let (failure, progress) = (self.failure.clone(), self.progress);
         let mut watcher = Watcher {
             interrupted,
+            enough: Arc::clone(&self.enough),
             failure,
             progress,
             stop: false,
         };
         let outcome = go(&mut self.session, &mut watcher);
         self.columns.clear();
+        if let Some(reader) = &self.reader {
+            // a reader that has gone need not be told
+            let _ = reader.send(Message::Ended);
+        }
         if let Some(d) = self.failure.take() {
             return Err(d.into());
         }
@@ -209,7 +225,7 @@ impl Inner {
 }
 
 /// Does something with a session; where it fails tells why and returns `failed`.
-unsafe fn with<T>(
+pub unsafe fn with<T>(
     session: *const CognateSession,
     error: *mut *mut CognateError,
     failed: T,
@@ -272,7 +288,7 @@ pub unsafe extern "C" fn cognate_session_new(
         } = options.unwrap_or(&default);
         let mut wrong = Vec::new();
         for (k, column) in options.columns.iter().enumerate() {
-            for mut d in model.model.check_expression(column) {
+            for mut d in check_column(&model.model, column) {
                 d.file = Some(format!("column {}", k + 1));
                 wrong.push(d);
             }
@@ -286,9 +302,11 @@ pub unsafe extern "C" fn cognate_session_new(
             .contains_key(&SettingsStatement::Results);
         let mut options = Options {
             full: full.unwrap_or(asked),
+            named_only: *full == Some(false),
             ..options.clone()
         };
         model.prepared.setup.solve.complete(&mut options);
+        let has_bars = options.accuracy;
         let mut session = Session::new(model.model.clone(), name, options);
         session.folders = model.folder().into_iter().collect();
         session.run.record.loads.clone_from(&model.prepared.loads);
@@ -300,6 +318,9 @@ pub unsafe extern "C" fn cognate_session_new(
             dataset: Arc::clone(&model.dataset),
             failure: Failure::default(),
             progress: None,
+            has_bars,
+            enough: Arc::default(),
+            reader: None,
             columns: Vec::new(),
             libraries: Vec::new(),
         };
@@ -437,7 +458,8 @@ pub unsafe extern "C" fn cognate_session_unit(
     unsafe { look(session, std::ptr::null(), told) }
 }
 
-/// Finds a column by its name, without regard to blanks and case; SIZE_MAX: there is none.
+/// Finds a column by its name, without regard to blanks and case, or by its element
+/// ("JOINT/1.FX"); SIZE_MAX: there is none, or there are several.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_session_find(
     session: *const CognateSession,

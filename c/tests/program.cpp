@@ -19,6 +19,7 @@ using Names = std::unique_ptr<CognateNames, Freed<CognateNames, cognate_names_fr
 using Model = std::unique_ptr<CognateModel, Freed<CognateModel, cognate_model_free>>;
 using Options = std::unique_ptr<CognateOptions, Freed<CognateOptions, cognate_options_free>>;
 using Session = std::unique_ptr<CognateSession, Freed<CognateSession, cognate_session_free>>;
+using Rows = std::unique_ptr<CognateRows, Freed<CognateRows, cognate_rows_free>>;
 
 static const std::string CART = "a cart that a routine pushes\n"
                                 "UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND\n"
@@ -132,11 +133,31 @@ static void a_session_moves_to_another_thread_and_is_interrupted_there() {
     CHECK(status == COGNATE_STATUS_INTERRUPTED);
 }
 
+static void another_thread_takes_rows_while_the_simulation_goes_on() {
+    Spring spring{1.0, 0};
+    Session session = cart(&spring);
+    Rows rows(cognate_session_queue(session.get(), false, nullptr));
+    const size_t width = cognate_session_columns(session.get());
+    std::vector<double> times;
+    std::thread reader([&] {
+        std::vector<double> row(width);
+        CognateNext next;
+        while ((next = cognate_rows_next(rows.get(), row.data(), width, 60.0, nullptr)) == COGNATE_NEXT_ROW) {
+            times.push_back(row[0]);
+        }
+        CHECK(next == COGNATE_NEXT_ENDED);
+    });
+    CHECK(cognate_session_simulate(session.get(), COGNATE_KIND_DYNAMIC, 3.0, 3000, nullptr, nullptr));
+    reader.join();
+    CHECK(times.size() == 3001 && times.front() == 0.0 && times.back() == 3.0);
+}
+
 int main() {
     expressions_are_shared_by_threads();
     a_callback_of_an_expression_is_called_by_all_threads();
     a_routine_has_data_of_its_own();
     a_session_moves_to_another_thread_and_is_interrupted_there();
+    another_thread_takes_rows_while_the_simulation_goes_on();
     std::puts("C++: all claims hold");
     return 0;
 }

@@ -3,6 +3,7 @@
 
 use crate::data::Data;
 use crate::formula::{Formula, TimedData};
+use cognate::diagnostic::counted;
 use cognate::expr::ast::{Ast, Constant, Node, NodeIx};
 use cognate::expr::program::Input;
 use cognate::expr::smoothness::smoothness;
@@ -60,14 +61,9 @@ pub fn explain(
     text += &match formula.program.constant_outputs().as_deref() {
         Some([value]) => format!("program    folded to the constant {}\n", digits(*value)),
         _ => format!(
-            "program    {} operation{}, {} registers\n",
-            formula.program.n_operations(),
-            if formula.program.n_operations() == 1 {
-                ""
-            } else {
-                "s"
-            },
-            formula.program.work_size()
+            "program    {}, {}\n",
+            counted(formula.program.n_operations(), "operation"),
+            counted(formula.program.work_size(), "register")
         ),
     };
     text

@@ -1,21 +1,25 @@
-//! `cognate animate`: a run as a page that moves, or as an animated `.glb` file.
+//! `cognate animate`: a run as a page that moves, as a film, or as an animated `.glb` file.
 
+use super::draw::{self, From};
 use super::moved::{Dimensions, Moved, Source, has_ending, pictured};
-use super::{Exit, Failure, Outcome, interrupt, remark, run};
+use super::progress::Progress;
+use super::writing::WritingArgs;
+use super::{Exit, Failure, Outcome, interrupt, piped, recorded, remark, run};
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use cognate::model::Model;
 use cognate::report::mechanism::page::{Shown, page};
 use cognate::report::mechanism::{Bodies, Pictured, Track, glb};
-use cognate::results::{self, Run};
+use cognate::results::Run;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 
-/// Show a run in motion: one page for any browser, or an animated .glb file
+/// Show a run in motion: one page for any browser, a film (.gif), or an animated .glb file
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   cognate animate examples/slider_crank.acf --open
   cognate animate pendulum.adm --end 2 --steps 200 -o pendulum.html -o pendulum.glb
+  cognate animate examples/slider_crank.acf -o crank.gif --width 640
   cognate animate run.res --model pendulum.adm
   cognate animate pendulum.acf --over earlier.res
   cognate animate examples/slider_crank.acf --dimension 41,11 --open
@@ -23,15 +27,25 @@ Examples:
 pub struct Args {
     #[command(flatten)]
     source: Source,
-    /// File to write: .html, a page that needs nothing else, or .glb (repeatable); without it a
-    /// page of the name of the run, here
-    #[arg(short = 'o', long = "out", value_name = "FILE")]
+    /// File to write: .html, a page that needs nothing else, .gif, a film, or .glb (repeatable)
+    /// [default: a page of the name of the run, here]
+    #[arg(short = 'o', long = "out", value_name = "FILE", value_parser = piped::output("html"))]
     out: Vec<PathBuf>,
-    /// A further run of the same mechanism, shown pale over the first (.res, .parquet, .json, .gra)
-    #[arg(long, value_name = "RUN")]
+    #[command(flatten)]
+    writing: WritingArgs,
+    /// A further run of the same mechanism, shown pale over the first: by its name, or a file of
+    /// its results (.res, .parquet, .json, .gra) [default: none]
+    #[arg(long, value_name = "RUN", value_parser = piped::results())]
     over: Option<PathBuf>,
     #[command(flatten)]
     dimensions: Dimensions,
+    /// Width of a film, in px [default: 480]
+    #[arg(long, value_name = "PX")]
+    width: Option<u32>,
+    /// Direction from which a film looks: an axis of ground, or from the side and above [default:
+    /// that of the drawing]
+    #[arg(long, value_enum)]
+    from: Option<From>,
     /// Mark on the page where solids overlap
     #[cfg(feature = "geometry")]
     #[arg(long)]
@@ -48,37 +62,54 @@ pub struct Args {
 /// written.
 pub fn run(args: &Args) -> Outcome {
     interrupt::install();
-    let known = |file: &PathBuf| has_ending(file, "glb") || has_ending(file, "html");
+    let known = |file: &PathBuf| ENDINGS.iter().any(|ending| has_ending(file, ending));
     if let Some(wrong) = args.out.iter().find(|file| !known(file)) {
-        let what = format!("{}: pictures that move are .html and .glb", wrong.display());
+        let what = format!(
+            "{}: pictures that move are .html, .gif and .glb",
+            disk::text(wrong)
+        );
         return Err(Failure::usage(what));
     }
+    let has_film = args.out.iter().any(|file| has_ending(file, "gif"));
+    if (args.width.is_some() || args.from.is_some()) && !has_film {
+        let what = "--width and --from are for a film: -o NAME.gif writes one";
+        return Err(Failure::usage(what));
+    }
+    args.writing.check_beside(&args.source.file, &args.out)?;
     let is_solved = run::has_commands(&args.source.file) || has_ending(&args.source.file, "adm");
     let Moved {
         model,
         run,
         folders,
     } = args.source.get()?;
-    let over = args.over.as_deref().map(results::read).transpose()?;
+    let over = args.over.as_deref().map(recorded::read).transpose()?;
     let mut out = args.out.clone();
     if out.is_empty() {
-        out.push(PathBuf::from(format!("{}.html", run.name)));
+        out.push(disk::path(format!("{}.html", run.name)));
     }
     let pictured = args
         .dimensions
-        .added_to(pictured(&model, &run, &folders)?)?;
+        .added_to(&model, pictured(&model, &run, &folders)?)?;
     #[cfg(feature = "geometry")]
     let pictured = match args.interference {
         true => marked(pictured, &model, &run, &folders)?,
         false => pictured,
     };
+    if pictured.track.times.len() < 2 {
+        remark(still(args));
+    }
     for file in &out {
         if has_ending(file, "glb") {
-            results::write_bytes(file, &glb::glb(&pictured))?;
+            args.writing.bytes(file, &glb::glb(&pictured))?;
+        } else if has_ending(file, "gif") {
+            let Some(bytes) = film(args, &pictured, &run)? else {
+                return Ok(Exit::Interrupted);
+            };
+            args.writing.bytes(file, &bytes)?;
         } else {
-            results::write_text(file, &page_of(&model, &pictured, &run, over.as_ref())?)?;
+            (args.writing).text(file, &page_of(&model, &pictured, &run, over.as_ref())?)?;
         }
-        remark(file.display());
+        remark(disk::text(&file));
     }
     if args.open {
         let pages = out.iter().filter(|file| has_ending(file, "html"));
@@ -89,6 +120,50 @@ pub fn run(args: &Args) -> Outcome {
     } else {
         Exit::Done
     })
+}
+
+/// Endings of the names of what moves.
+const ENDINGS: [&str; 3] = ["html", "gif", "glb"];
+/// Width of a film when nobody says, in px.
+const FILM_WIDTH: u32 = 480;
+
+/// Returns why nothing moves, and what helps.
+fn still(args: &Args) -> String {
+    let file = args.source.file.display();
+    let is_dataset = has_ending(&args.source.file, "adm");
+    if is_dataset && args.source.span.end.is_none() {
+        return format!(
+            "nothing moves: a dataset without command file is assembled and stands still; \
+             cognate animate {file} --end 2 runs it to time 2"
+        );
+    }
+    format!("nothing moves: {file} gives a single output")
+}
+
+/// Returns a run as a film; `None`: the user interrupted.
+#[cfg(feature = "gif")]
+fn film(args: &Args, pictured: &Pictured, run: &Run) -> Result<Option<Vec<u8>>, Failure> {
+    use cognate::report::mechanism::film::Film;
+    let view = args.from.and_then(|from| draw::view(from, &pictured.view));
+    let width = draw::width(args.width.unwrap_or(FILM_WIDTH));
+    let units = [run.units.length.as_str(), run.units.time.as_str()];
+    let film = Film::new(pictured, view, width, units);
+    let progress = Progress::new(false, 0.0, film.len() as f64);
+    let mut goes_on = |done: usize| {
+        progress.pictures(done, film.len());
+        !interrupt::requested()
+    };
+    let made = film.gif(&mut goes_on);
+    progress.done();
+    Ok(made?)
+}
+
+#[cfg(not(feature = "gif"))]
+fn film(_: &Args, _: &Pictured, _: &Run) -> Result<Option<Vec<u8>>, Failure> {
+    let what = "this program was built without the feature gif";
+    Err(Diagnostic::error("picture_format", what)
+        .help("write an .html")
+        .into())
 }
 
 /// Marks where solids overlap; says so where none do.
@@ -139,26 +214,8 @@ pub fn page_of_run(model: &Model, run: &Run, folders: &[PathBuf]) -> Result<Stri
 
 /// Opens a page in the browser, without waiting for it; says where the page is when there is none.
 pub fn open(file: &Path) {
-    let openers: &[&[&str]] = if cfg!(target_os = "macos") {
-        &[&["open"]]
-    } else if cfg!(windows) {
-        &[&["cmd", "/C", "start", ""]]
-    } else {
-        &[&["xdg-open"], &["sensible-browser"]]
-    };
-    let opened = openers.iter().any(|words| {
-        let mut command = Command::new(words[0]);
-        command.args(&words[1..]).arg(file);
-        let quiet = command
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::null());
-        quiet.spawn().is_ok()
-    });
-    if !opened {
-        remark(format!(
-            "no browser was found; open {} in one",
-            file.display()
-        ));
+    if open::that_detached(file).is_err() {
+        let file = disk::text(file);
+        remark(format!("no browser was found; open {file} in one"));
     }
 }

@@ -2,9 +2,13 @@
 //! what is not solved, and what ends it early.
 
 use super::{Failure, limit};
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use cognate::analysis::session::Options;
+use cognate::analysis::time::options::METHODS_OF_ADAMS;
 use cognate::dataset::command::SimulationKind;
+use cognate::disk;
 use cognate::model::ElementKind;
+use cognate::numeric::METHODS;
 use std::path::Path;
 
 /// The kind of a simulation, on the command line and in a set-up.
@@ -32,13 +36,15 @@ impl From<KindName> for SimulationKind {
 /// The one simulation of a dataset without command file.
 #[derive(clap::Args, Clone, Copy, Debug, Default)]
 pub struct SpanArgs {
-    /// End of the simulation, for a dataset without command file
+    /// End of the simulation, for a dataset without command file [default: that of MODEL.toml,
+    /// needed without it]
     #[arg(long, value_name = "TIME")]
     pub end: Option<f64>,
-    /// Output steps, for a dataset without command file
+    /// Output steps, for a dataset without command file [default: those of MODEL.toml, else 50]
     #[arg(long, value_name = "N", value_parser = whole_from_one)]
     pub steps: Option<usize>,
-    /// Kind of simulation, for a dataset without command file
+    /// Kind of simulation, for a dataset without command file [default: that of MODEL.toml, else
+    /// transient: kinematic where all is driven, else dynamic]
     #[arg(long = "type", value_name = "KIND", value_enum)]
     pub kind: Option<KindName>,
 }
@@ -47,17 +53,18 @@ pub struct SpanArgs {
 #[derive(clap::Args, Clone, Debug, Default)]
 pub struct IntegrationArgs {
     /// Permitted local error of the integration, relative to the magnitude of each unknown
+    /// [default: that of INTEGRATOR, else 1e-6]
     #[arg(long, value_name = "E")]
     pub error: Option<f64>,
-    /// Method of integration (AUTO chooses by itself)
-    #[arg(long, value_name = "NAME")]
+    /// Method of integration [default: that of INTEGRATOR, else AUTO]
+    #[arg(long, value_name = "NAME", value_parser = methods(), ignore_case = true)]
     pub method: Option<String>,
 }
 
 /// The treatment of what is not solved.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub struct UnsolvedArgs {
-    /// Leave out elements of this kind where they are not solved (repeatable)
+    /// Leave out elements of this kind where they are not solved (repeatable) [default: none]
     #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
     pub skip: Vec<ElementKind>,
     /// Take what USER(…) would compute as zero
@@ -71,12 +78,29 @@ pub struct LimitArgs {
     /// Run motions whose displacement or velocity jumps, piece by piece
     #[arg(long)]
     pub piecewise: bool,
-    /// Steps that a simulation may try before it ends early, with exit code 7
+    /// Steps that a simulation may try before it ends early, with exit code 7 [default: any number]
     #[arg(long, value_name = "N")]
     pub max_steps: Option<usize>,
     /// Processor time after which a run ends with its results so far, and exit code 7: 60s, 2min
+    /// [default: any time]
     #[arg(long, value_name = "TIME", value_parser = limit::seconds)]
     pub limit: Option<f64>,
+}
+
+/// Reads the name of a method: ours, or one of Adams that a dataset may name.
+pub fn methods() -> PossibleValuesParser {
+    let ours = METHODS
+        .iter()
+        .map(|m| PossibleValue::new(m.name).help(m.summary));
+    let chosen = PossibleValue::new("AUTO").help("the one that fits, and another on the way");
+    let adams = METHODS_OF_ADAMS.iter().flat_map(|(_, names)| *names);
+    let adams = adams.map(|name| PossibleValue::new(*name).hide(true));
+    [chosen]
+        .into_iter()
+        .chain(ours)
+        .chain(adams)
+        .collect::<Vec<_>>()
+        .into()
 }
 
 /// Reads a whole number from 1 on.
@@ -102,7 +126,7 @@ impl SpanArgs {
         };
         Err(Failure::usage(format!(
             "{name} is for a dataset without command file; {} says itself what is simulated",
-            file.display()
+            disk::text(&file)
         )))
     }
 }

@@ -1,13 +1,15 @@
 //! `cognate check`: the mistakes in datasets and command files, without running them.
 
+use super::foreseen::Foreseen;
 use super::render::Sources;
+use super::run;
 use super::setup::{self, Asked};
-use super::{Exit, Failure, Outcome, complain, remark, say};
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::dataset::command::{Command, Script, Simulate};
+use super::{Exit, Failure, Outcome, complain, piped, remark, say};
+use cognate::dataset::command::{Command, Script};
 use cognate::dataset::{self, Reading};
-use cognate::diagnostic::{Cause, Diagnostic, Error, Severity};
-use cognate::model::{ElementKind, Model};
+use cognate::diagnostic::{Diagnostic, Error, Severity, counted};
+use cognate::disk;
+use cognate::model::Model;
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -16,76 +18,76 @@ use std::path::{Path, PathBuf};
 ///
 /// All mistakes of all files at once, each with its place, its element and advice. A model without
 /// mistakes is assembled as a run would do it, and what that refuses or doubts is told; nothing is
-/// solved. Exit code 3 when a file has an error, 4 when the model does; warnings alone are no
-/// failure.
+/// solved. What cannot be looked at is named. The last line says whether a run will begin, or where
+/// it will stop. Exit code 3 when a file has an error, 4 when the model does; warnings, and what
+/// is not solved here, are no failure.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   cognate check model.adm
   cognate check models/*.adm run.acf --json")]
 pub struct Args {
-    /// Datasets (.adm) and command files (.acf)
-    #[arg(required = true)]
+    /// Datasets (.adm) and command files (.acf); - reads a dataset from standard input
+    #[arg(required = true, value_parser = piped::model())]
     files: Vec<PathBuf>,
     /// Print the findings as JSON on standard output
     #[arg(long)]
     json: bool,
 }
 
-/// Checks the files and prints their mistakes and warnings.
+/// Checks the files and prints their mistakes and warnings, and what a run of each will say.
 pub fn run(args: &Args) -> Outcome {
-    let mut all = Vec::new();
     let mut sources = Sources::default();
-    let mut model_fails = false;
     let mut told: BTreeSet<PathBuf> = args.files.iter().cloned().collect();
-    for file in &args.files {
+    let looks = args.files.iter().map(|file| {
         let ending = file.extension().map(|e| e.to_ascii_lowercase());
         match ending.as_deref().and_then(std::ffi::OsStr::to_str) {
-            Some("acf") => all.extend(check_script(
-                file,
-                &mut sources,
-                &mut told,
-                &mut model_fails,
-            )),
-            _ => match dataset::read(file) {
-                Ok(reading) => {
-                    add(&mut sources, &reading);
-                    let (model, mistaken) = set_up(&reading, file, &mut sources);
-                    let begun = assembled(&reading, model, file, None);
-                    model_fails |= begun.iter().any(is_error);
-                    all.extend(reading.diagnostics);
-                    all.extend(mistaken);
-                    all.extend(begun);
-                }
-                Err(error) => all.extend(error),
-            },
+            Some("acf") => check_script(file, &mut sources, &mut told),
+            _ => check_dataset(file, &mut sources),
         }
-    }
+    });
+    let looks: Vec<Foreseen> = looks.collect();
+    let all: Vec<Diagnostic> = looks.iter().flat_map(|l| l.found.iter().cloned()).collect();
     let count = |s: Severity| all.iter().filter(|d| d.severity == s).count();
-    let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
+    let counts = [Severity::Error, Severity::Warning, Severity::Note].map(count);
+    let [errors, warnings, _] = counts;
     if args.json {
         let findings = cognate::results::json::findings(&all);
+        let runs = args
+            .files
+            .iter()
+            .zip(&looks)
+            .map(|(file, look)| look.json(file));
         say(&format!(
             "{:#}\n",
-            json!({ "errors": errors, "warnings": warnings, "findings": findings })
+            json!({
+                "errors": errors,
+                "warnings": warnings,
+                "findings": findings,
+                "runs": runs.collect::<Vec<_>>(),
+            })
         ));
     } else {
         complain(&all, &sources);
+        let is_whole = looks.iter().all(|look| look.stop.is_none());
         remark(format!(
             "{} in {}",
-            tally(errors, warnings, count(Severity::Note)),
-            number(args.files.len(), "file")
+            tally(counts, is_whole),
+            counted(looks.len(), "file")
         ));
+        for (file, look) in args.files.iter().zip(&looks) {
+            let name = match looks.len() {
+                1 => String::new(),
+                _ => format!("{}: ", file.display()),
+            };
+            (look.sentences().iter()).for_each(|line| remark(format!("{name}{line}")));
+        }
     }
-    Ok(match (errors, model_fails) {
-        (0, _) => Exit::Done,
-        (_, true) => Exit::Model,
-        (_, false) => Exit::Input,
+    Ok(match errors {
+        0 => Exit::Done,
+        _ if looks.iter().any(|look| look.model_fails) => Exit::Model,
+        _ => Exit::Input,
     })
-}
-
-fn is_error(d: &Diagnostic) -> bool {
-    d.severity == Severity::Error
 }
 
 /// Returns the model with the loads and functions of the file beside its dataset, and the mistakes
@@ -97,143 +99,93 @@ fn set_up(reading: &Reading, dataset: &Path, sources: &mut Sources) -> (Model, V
         Err(failure) => {
             let file = dataset.with_extension("toml");
             if let Ok(text) = std::fs::read_to_string(&file) {
-                sources.add(file.display().to_string(), text);
+                sources.add(disk::text(&file), text);
             }
             (reading.model.clone(), failure.diagnostics)
         }
     }
 }
 
-/// Time up to which motions are looked at where no command says when the run ends.
-const HORIZON: f64 = 10.0;
-
-/// Reasons why a model is not solved, or not as it is meant, that are no mistakes in it.
-const NOT_SOLVED_HERE: [Cause; 5] = [
-    Cause::Unsupported,
-    Cause::UserRoutine,
-    Cause::CurveData,
-    Cause::Skipped,
-    Cause::Approximate,
-];
-
-/// Finds what a run would refuse or doubt before its first step, of a model as commands leave it
-/// before their first simulation; nothing where the dataset has mistakes.
-fn assembled(
-    reading: &Reading,
-    model: Model,
-    file: &Path,
-    simulate: Option<&Simulate>,
-) -> Vec<Diagnostic> {
-    if reading.failed() {
-        return Vec::new();
-    }
-    let (analysis, end) = match simulate.map(|s| s.resolved(0.0)) {
-        Some(Ok((analysis, end, _))) => (analysis, end),
-        Some(Err(error)) => return error.into(),
-        None => (Analysis::Transient, HORIZON),
+/// Checks a dataset, with the file beside it.
+fn check_dataset(file: &Path, sources: &mut Sources) -> Foreseen {
+    let reading = match dataset::read(file) {
+        Ok(reading) => reading,
+        Err(error) => return Foreseen::of_file(error.into()),
     };
-    let begin = |options: Options| {
-        let mut session = Session::new(model.clone(), "check", options);
-        session.folders = file.parent().map(Path::to_path_buf).into_iter().collect();
-        session.preview(analysis, end)
-    };
-    let mut found = begin(Options::default());
-    let ours = |d: &Diagnostic| d.is_any(&NOT_SOLVED_HERE);
-    if found.iter().any(|d| is_error(d) && ours(d)) {
-        // told, and left out to see the rest
-        let unsolved = ElementKind::ALL.iter().copied().filter(|k| k.is_unsolved());
-        let rest = begin(Options {
-            zero_user: true,
-            skip: unsolved.collect(),
-            ..Options::default()
-        });
-        found.retain(|d| ours(d) || is_error(d));
-        let new = rest.into_iter().filter(|d| !ours(d));
-        found.extend(new);
-    }
-    for d in found.iter_mut().filter(|d| ours(d)) {
-        d.severity = Severity::Note;
-    }
-    // where something cannot be, that comes before what is doubted
-    let doubts = model.doubts();
-    if found.iter().any(is_error) {
-        found.extend(doubts);
-    } else {
-        found.splice(0..0, doubts);
-    }
-    found.dedup();
-    // the reader has told, with more advice, what can be seen without assembly
-    let told = |d: &Diagnostic| {
-        let what = |d: &Diagnostic| (d.code, d.subject(), d.argument);
-        reading.diagnostics.iter().any(|r| what(r) == what(d))
-    };
-    found.retain(|d| !told(d));
-    (found.into_iter().map(|d| reading.dataset.locate(d))).collect()
+    add(sources, &reading);
+    let (model, mistaken) = set_up(&reading, file, sources);
+    let begun = Foreseen::of_model(&reading, &model, file, None);
+    let mut look = Foreseen::of_file(reading.diagnostics);
+    look.append(Foreseen::of_file(mistaken));
+    look.append(begun);
+    look
 }
 
 /// Checks a command file, and the effect of its commands on the model it names; `told`: datasets
 /// that are spoken of elsewhere.
-fn check_script(
-    file: &Path,
-    sources: &mut Sources,
-    told: &mut BTreeSet<PathBuf>,
-    model_fails: &mut bool,
-) -> Vec<Diagnostic> {
+fn check_script(file: &Path, sources: &mut Sources, told: &mut BTreeSet<PathBuf>) -> Foreseen {
     let script = match Script::read(file) {
         Ok(script) => script,
-        Err(error) => return error.into(),
+        Err(error) => return Foreseen::of_file(error.into()),
     };
-    let mut all = script.diagnostics.clone();
+    let mut look = Foreseen::of_file(script.diagnostics.clone());
     let Some(path) = script.model_file() else {
-        return all;
+        // that is no mistake: the dataset may be given beside the commands, or be in a saved state
+        let first = script.steps.first().map(|step| &step.command);
+        if !matches!(first, Some(Command::Reload(Some(_)))) {
+            look.stop = look.stop.or_else(|| Some(run::names_no_dataset(file)));
+        }
+        return look;
     };
     let reading = match dataset::read(&path) {
         Ok(reading) => reading,
-        Err(errors) => {
-            all.extend(errors);
-            return all;
+        Err(error) => {
+            look.append(Foreseen::of_file(error.into()));
+            return look;
         }
     };
     add(sources, &reading);
     let (mut model, mistaken) = set_up(&reading, &path, sources);
-    all.extend(mistaken);
+    look.append(Foreseen::of_file(mistaken));
     let mut begun = false;
     for step in &script.steps {
         if let Command::Simulate(simulate) = &step.command
             && !std::mem::replace(&mut begun, true)
         {
-            let found = assembled(&reading, model.clone(), &path, Some(simulate));
-            *model_fails |= found.iter().any(is_error);
-            all.extend(found);
+            look.append(Foreseen::of_model(&reading, &model, &path, Some(simulate)));
         }
         let Err(errors) = model.apply(&step.command) else {
             continue;
         };
-        all.extend(errors.into_iter().map(|d| Diagnostic {
-            file: Some(file.display().to_string()),
+        let errors = errors.into_iter().map(|d| Diagnostic {
+            file: Some(disk::text(&file)),
             line: step.line,
             column: 1,
             ..d
-        }));
+        });
+        look.append(Foreseen::of_file(errors.collect()));
     }
-    if told.insert(path) || reading.failed() {
-        all.extend(reading.diagnostics);
+    // its mistakes stop a run, whoever tells them
+    let mut read = Foreseen::of_file(reading.diagnostics.clone());
+    if !told.insert(path) && !reading.failed() {
+        read.found.clear();
     }
-    all
+    look.append(read);
+    look
 }
 
-fn number(n: usize, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
-}
-
-fn tally(errors: usize, warnings: usize, notes: usize) -> String {
+fn tally([errors, warnings, notes]: [usize; 3], is_whole: bool) -> String {
+    let nothing = match is_whole {
+        true => "nothing wrong",
+        false => "no mistake",
+    };
     match (errors, warnings) {
-        (0, 0) if notes > 0 => format!("nothing wrong, {}", number(notes, "note")),
-        (0, 0) => "nothing wrong".into(),
+        (0, 0) if notes > 0 => format!("{nothing}, {}", counted(notes, "note")),
+        (0, 0) => nothing.into(),
         _ => format!(
             "{}, {}",
-            number(errors, "error"),
-            number(warnings, "warning")
+            counted(errors, "error"),
+            counted(warnings, "warning")
         ),
     }
 }

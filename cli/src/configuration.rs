@@ -1,19 +1,20 @@
 //! `cognate configuration`: the configuration of a run at some time as a dataset that begins there.
 
 use super::arguments::{IntegrationArgs, KindName, SpanArgs, UnsolvedArgs};
-use super::convert::same_file;
 use super::moved::has_ending;
 use super::recorded::{model_file, record_of};
 use super::run::{self, Single};
 use super::setup::Asked;
-use super::{Exit, Failure, Outcome, complain_in_files, interrupt, remark};
+use super::writing::WritingArgs;
+use super::{Exit, Failure, Outcome, complain_in_files, interrupt, piped, remark};
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::dataset;
 use cognate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use cognate::diagnostic::{Cause, Diagnostic};
+use cognate::disk;
 use cognate::model::{ElementId, ElementKind, Model};
-use cognate::results::{self, Status, digits_of_six};
+use cognate::results::{Status, digits_of_six};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -32,23 +33,28 @@ Examples:
   cognate configuration drop.adm --at 0.1 --error 1e-9 -o later.adm")]
 pub struct Args {
     /// Command file (.acf), log (.msg), dataset (.adm), or results of a run whose record names its
-    /// model
+    /// model; - reads a dataset from standard input
+    #[arg(value_parser = piped::model())]
     file: PathBuf,
     /// Time of the configuration
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     at: f64,
     /// Dataset to write
-    #[arg(short = 'o', long = "out", value_name = "FILE.adm")]
+    #[arg(short = 'o', long = "out", value_name = "FILE.adm", value_parser = piped::output("adm"))]
     out: PathBuf,
-    /// Write the commands that are left to this file, with ends that count from there
+    /// Write the commands that are left to this file, with ends that count from there [default:
+    /// they are not written]
     #[arg(long, value_name = "FILE.acf")]
     commands: Option<PathBuf>,
-    /// Dataset or command file of the results, where it is not the one that their record names
+    #[command(flatten)]
+    writing: WritingArgs,
+    /// Dataset or command file of the results [default: the one that their record names]
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
     #[command(flatten)]
     integration: IntegrationArgs,
-    /// Kind of simulation, for a dataset without command file
+    /// Kind of simulation, for a dataset without command file [default: that of MODEL.toml, else
+    /// transient]
     #[arg(long = "type", value_name = "KIND", value_enum)]
     kind: Option<KindName>,
     #[command(flatten)]
@@ -66,12 +72,6 @@ pub fn run(args: &Args) -> Outcome {
         (true, model) => (args.file.clone(), model.as_deref()),
         (false, model) => (model_file(&args.file, model.as_deref())?, None),
     };
-    let outputs = [Some(&args.out), args.commands.as_ref()];
-    let is_input = |out: &&PathBuf| same_file(out, &file) || same_file(out, &args.file);
-    if outputs.into_iter().flatten().any(|out| is_input(&out)) {
-        let what = "the output is the input, which is never overwritten";
-        return Err(Failure::usage(what));
-    }
     let recorded = record_of(&args.file).filter(|_| !is_model);
     let acting = recorded.as_ref().and_then(loads_of_record);
     let asked = match &acting {
@@ -103,7 +103,12 @@ pub fn run(args: &Args) -> Outcome {
             asked,
         )?,
     };
-    let options = args.integration.given_to(Options::default());
+    disk::note_input(&args.file);
+    (args.writing).check([&args.out].into_iter().chain(&args.commands))?;
+    let options = args.integration.given_to(Options {
+        named_only: true,
+        ..Options::default()
+    });
     let mut options = args.unsolved.given_to(options);
     // a run is gone through as it was solved
     let error = || recorded.and_then(|r| r["error"].as_f64());
@@ -237,9 +242,9 @@ fn write(args: &Args, session: &Session, left: &[Step]) -> Outcome {
             ))
         });
     }
-    results::write_text(&args.out, &text)?;
+    args.writing.text(&args.out, &text)?;
     let at = digits_of_six(beginning.time);
-    let out = args.out.display();
+    let out = disk::text(&args.out);
     remark(format!("{out} begins at time 0, which is {at} of the run"));
     for change in &beginning.changes {
         remark(change);
@@ -249,10 +254,10 @@ fn write(args: &Args, session: &Session, left: &[Step]) -> Outcome {
     match &args.commands {
         Some(file) => {
             let text = commands(&args.out, model, left, beginning.time);
-            results::write_text(file, &text)?;
+            args.writing.text(file, &text)?;
             remark(format!(
                 "{} holds the commands that are left",
-                file.display()
+                disk::text(&file)
             ));
         }
         None if !untold(model).is_empty() => {

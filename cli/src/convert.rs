@@ -1,9 +1,12 @@
 //! `cognate convert`: results from one format into another.
 
 use super::output::StyleArgs;
-use super::{Exit, Failure, Outcome, remark};
-use cognate::results::{self, Run};
-use std::path::{Path, PathBuf};
+use super::writing::WritingArgs;
+use super::{Exit, Failure, Outcome, piped, recorded, remark};
+use cognate::diagnostic::counted;
+use cognate::disk;
+use cognate::results::Run;
+use std::path::PathBuf;
 
 /// Convert results from one format into another
 ///
@@ -17,18 +20,23 @@ Examples:
   cognate convert run.gra run.csv --column PART_2_XFORM.X --column PART_2_XFORM.Y
   cognate convert run.res run.json --sequence dynamic_001")]
 pub struct Args {
-    /// Results to read
+    /// Results to read; - reads .csv from standard input, gra:- and so on others
+    #[arg(value_parser = piped::results())]
     input: PathBuf,
     /// File to write
+    #[arg(value_parser = piped::output("csv"))]
     output: PathBuf,
-    /// Keep this column (repeatable); time is always kept
+    /// Keep this column (repeatable); time is always kept [default: all]
     #[arg(long = "column", value_name = "NAME")]
     columns: Vec<String>,
-    /// Keep the rows of this sequence, such as static_001 or dynamic_001 (repeatable)
+    /// Keep the rows of this sequence, such as static_001 or dynamic_001 (repeatable) [default:
+    /// all]
     #[arg(long = "sequence", value_name = "NAME")]
     sequences: Vec<String>,
     #[command(flatten)]
     style: StyleArgs,
+    #[command(flatten)]
+    writing: WritingArgs,
 }
 
 /// Converts results from one file into another.
@@ -36,27 +44,18 @@ pub struct Args {
 /// # Errors
 /// When a file cannot be read or written, or has no such column or sequence.
 pub fn run(args: &Args) -> Outcome {
-    if same_file(&args.input, &args.output) {
-        return Err(Failure::usage(
-            "the output is the input, which is never overwritten",
-        ));
-    }
-    let mut run = results::read(&args.input)?;
+    args.writing.check_beside(&args.input, [&args.output])?;
+    let mut run = recorded::read(&args.input)?;
     select_columns(&mut run, &args.columns)?;
     select_sequences(&mut run, &args.sequences)?;
-    results::write(&run, &args.output, args.style.style())?;
+    args.writing.run(&run, &args.output, args.style.style())?;
     remark(format!(
-        "{} columns, {} rows in {}",
-        run.table_columns().len(),
-        run.table_rows().count(),
-        args.output.display()
+        "{}, {} in {}",
+        counted(run.table_columns().len(), "column"),
+        counted(run.table_rows().count(), "row"),
+        disk::text(&args.output)
     ));
     Ok(Exit::Done)
-}
-
-/// Returns whether two names are of one file that exists.
-pub fn same_file(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 /// Keeps time and the named columns of the table; `.res` keeps all, as its elements refer to them.
@@ -66,10 +65,7 @@ fn select_columns(run: &mut Run, names: &[String]) -> Result<(), Failure> {
     }
     let mut table = vec![0];
     for name in names {
-        table.push(
-            run.find(name)
-                .ok_or_else(|| cognate::report::plot::unknown_column(run, name))?,
-        );
+        table.extend(run.resolve_all(name)?);
     }
     run.table = table;
     Ok(())

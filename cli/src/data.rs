@@ -9,6 +9,7 @@
 //! B-spline) and `"order"`.
 
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use cognate::encoding::as_utf8;
 use cognate::expr::interpolation::{Bindings, Curve, CurvePoints, Spline};
 use cognate::expr::program::Input;
@@ -131,10 +132,10 @@ fn each_of(
     mut take: impl FnMut(u32, &Map<String, Value>) -> Result<(), String>,
 ) -> Result<(), Diagnostic> {
     let in_file = |mut d: Diagnostic| {
-        d.file = Some(file.display().to_string());
+        d.file = Some(disk::text(&file));
         d
     };
-    let bytes = std::fs::read(file).map_err(|e| {
+    let bytes = cognate::disk::read(file).map_err(|e| {
         in_file(Diagnostic::error(
             "file_unreadable",
             format!("cannot be read: {e}"),

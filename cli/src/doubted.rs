@@ -2,7 +2,7 @@
 
 use super::remark;
 use super::run::Job;
-use cognate::diagnostic::{Diagnostic, Severity};
+use cognate::diagnostic::{Diagnostic, Severity, counted};
 
 /// Most warnings about a dataset that a run writes out, a line each.
 const MOST_DOUBTS: usize = 5;
@@ -33,7 +33,8 @@ pub fn remark_on(job: &Job, quiet: bool) -> [Vec<Diagnostic>; 2] {
     let rest = all().count().saturating_sub(MOST_DOUBTS);
     if rest > 0 {
         remark(format!(
-            "{rest} more in the dataset: cognate check tells all"
+            "{} about the dataset: cognate check shows all",
+            counted(rest, "more warning")
         ));
     }
     [read, located]

@@ -1,8 +1,10 @@
 //! `cognate draw`: one configuration of a model as a picture.
 
 use super::moved::{Dimensions, Moved, Source, pictured};
-use super::{Exit, Failure, Outcome, interrupt, remark};
+use super::writing::WritingArgs;
+use super::{Exit, Failure, Outcome, interrupt, piped, remark};
 use cognate::analysis::session::Session;
+use cognate::disk;
 use cognate::model::ElementId;
 use cognate::report::mechanism::drawing::{Names, SymbolKind, Wanted, drawing};
 use cognate::report::mechanism::{Pictured, View, drawing_svg};
@@ -27,12 +29,14 @@ Examples:
 pub struct Args {
     #[command(flatten)]
     source: Source,
-    /// Time of the configuration: the nearest output; without it the last one
+    /// Time of the configuration: the nearest output [default: the last]
     #[arg(long, value_name = "TIME")]
     at: Option<f64>,
-    /// File to write: .svg, .png or .pdf; without it NAME_drawing.svg, here
-    #[arg(short = 'o', long = "out", value_name = "FILE")]
+    /// File to write: .svg, .png or .pdf [default: NAME_drawing.svg, here]
+    #[arg(short = 'o', long = "out", value_name = "FILE", value_parser = piped::output("svg"))]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     /// Symbols that are drawn
     #[arg(long, value_enum, default_value = "joints")]
     symbols: SymbolsArg,
@@ -41,7 +45,7 @@ pub struct Args {
     /// Names that are written: of bodies, or of joints (or the markers that are shown), too
     #[arg(long, value_enum, default_value = "bodies")]
     names: NamesArg,
-    /// Element that stands out, by JOINT/3 or its name (repeatable)
+    /// Element that stands out, by JOINT/3 or its name (repeatable) [default: none]
     #[arg(long, value_name = "ELEMENT")]
     highlight: Vec<String>,
     /// Draw N further configurations of the run, pale
@@ -90,8 +94,9 @@ impl SymbolsArg {
     }
 }
 
+/// A direction to look from.
 #[derive(Clone, Copy, clap::ValueEnum)]
-enum From {
+pub enum From {
     /// square to the plane of the mechanism; in perspective where it has none
     Best,
     X,
@@ -108,23 +113,23 @@ enum From {
 /// written.
 pub fn run(args: &Args) -> Outcome {
     interrupt::install();
+    (args.writing).check_beside(&args.source.file, &args.out)?;
     let Moved {
         model,
         run,
         folders,
     } = args.source.get()?;
     let highlighted = args.highlight.iter().map(|element| {
-        let exit = Exit::Usage;
         let found = model.find_element(element);
-        found.map_err(|d| Failure { exit, ..d.into() })
+        found.map_err(|d| Failure::at_argument("--highlight", element, d))
     });
     let highlighted = highlighted.collect::<Result<BTreeSet<ElementId>, Failure>>()?;
     let pictured = args
         .dimensions
-        .added_to(pictured(&model, &run, &folders)?)?;
+        .added_to(&model, pictured(&model, &run, &folders)?)?;
     let out = args.out.clone();
     // NAME.svg is the picture of the requests of a run
-    let out = out.unwrap_or_else(|| PathBuf::from(format!("{}_drawing.svg", run.name)));
+    let out = out.unwrap_or_else(|| disk::path(format!("{}_drawing.svg", run.name)));
     let times = &pictured.track.times;
     let last = times.len() - 1;
     let row = match args.at {
@@ -145,7 +150,7 @@ pub fn run(args: &Args) -> Outcome {
         view: view(args.from, &pictured.view),
         ..Wanted::at_row(row, &run.units.length)
     };
-    write(&pictured, &wanted, args.width, &run, &out)?;
+    write(&pictured, &wanted, args.width, &run, (&out, args.writing))?;
     Ok(Exit::Done)
 }
 
@@ -157,7 +162,13 @@ pub fn draw_at(session: &Session, at: f64, file: &Path) -> Result<(), Failure> {
     let run = &session.run;
     let pictured = pictured(&session.model, run, &session.folders)?;
     let wanted = Wanted::at_row(nearest(&pictured.track.times, at), &run.units.length);
-    write(&pictured, &wanted, WIDTH, run, file)
+    write(
+        &pictured,
+        &wanted,
+        WIDTH,
+        run,
+        (file, WritingArgs::default()),
+    )
 }
 
 /// Draws a configuration in which some elements stand out.
@@ -167,7 +178,7 @@ pub fn draw_at(session: &Session, at: f64, file: &Path) -> Result<(), Failure> {
 pub fn draw_standing_out(
     moved: &Moved,
     highlighted: BTreeSet<ElementId>,
-    file: &Path,
+    (file, writing): (&Path, WritingArgs),
 ) -> Result<(), Failure> {
     let Moved {
         model,
@@ -181,7 +192,7 @@ pub fn draw_standing_out(
         forces: false,
         ..Wanted::at_row(pictured.track.times.len() - 1, &run.units.length)
     };
-    write(&pictured, &wanted, WIDTH, run, file)
+    write(&pictured, &wanted, WIDTH, run, (file, writing))
 }
 
 /// Writes a drawing.
@@ -190,16 +201,19 @@ fn write(
     wanted: &Wanted,
     width: u32,
     run: &Run,
-    file: &Path,
+    (file, writing): (&Path, WritingArgs),
 ) -> Result<(), Failure> {
     if PictureFormat::of(file).is_none() {
-        let what = format!("{}: drawings are .svg, .png and .pdf", file.display());
+        let what = format!("{}: drawings are .svg, .png and .pdf", disk::text(&file));
         return Err(Failure::usage(what));
     }
-    let width = f64::from(width.clamp(200, 8000));
-    let text = drawing_svg::svg(&drawing(pictured, wanted), width, &run.units.length);
-    picture::write(&text, file)?;
-    remark(file.display());
+    let text = drawing_svg::svg(
+        &drawing(pictured, wanted),
+        self::width(width),
+        &run.units.length,
+    );
+    writing.bytes(file, &picture::bytes(&text, file)?)?;
+    remark(disk::text(&file));
     Ok(())
 }
 
@@ -230,8 +244,13 @@ fn nearest(times: &[f64], at: f64) -> usize {
     )
 }
 
+/// Returns a width that pictures may have, in px.
+pub fn width(px: u32) -> f64 {
+    f64::from(px.clamp(200, 8000))
+}
+
 /// Returns the view from a direction; `None`: that of the mechanism.
-fn view(from: From, own: &View) -> Option<View> {
+pub fn view(from: From, own: &View) -> Option<View> {
     match from {
         From::Best => None,
         From::X => Some(own.along(0)),

@@ -2,11 +2,12 @@
 //! dataset with another name of an element, or without it.
 
 use super::assembly;
-use super::convert::same_file;
 use super::table::Table;
-use super::{Exit, Failure, Outcome, complain_in_files, remark, run, say, width};
+use super::writing::WritingArgs;
+use super::{Exit, Failure, Outcome, complain_in_files, piped, remark, run, say, width};
 use cognate::dataset::{self, Dataset, Reading, manual};
 use cognate::diagnostic::{Diagnostic, Severity};
+use cognate::disk;
 use cognate::model::{ElementId, ElementKind, Model};
 use cognate::results;
 use serde_json::json;
@@ -27,26 +28,30 @@ Examples:
   cognate elements belt.adm --rename COUPLER/1=belt -o named.adm
   cognate elements belt.adm --delete COUPLER/1 -o without.adm")]
 pub struct Args {
-    /// Dataset (.adm)
+    /// Dataset (.adm); - reads a dataset from standard input
+    #[arg(value_parser = piped::model())]
     model: PathBuf,
-    /// List elements of this kind only (repeatable)
+    /// List elements of this kind only (repeatable) [default: all]
     #[arg(long = "kind", value_name = "KEYWORD")]
     kinds: Vec<ElementKind>,
     /// Show the assembly: parts below what their names with dots begin with, and what each carries
     #[arg(long)]
     tree: bool,
-    /// Show an element: its statement, whom it names and who names it
+    /// Show an element: its statement, whom it names and who names it [default: none, all are
+    /// listed]
     #[arg(long, value_name = "ELEMENT")]
     show: Option<String>,
-    /// Give an element another name (repeatable)
+    /// Give an element another name (repeatable) [default: none]
     #[arg(long, value_name = "ELEMENT=NAME", value_parser = naming)]
     rename: Vec<(String, String)>,
-    /// Take an element out (repeatable)
+    /// Take an element out (repeatable) [default: none]
     #[arg(long, value_name = "ELEMENT")]
     delete: Vec<String>,
-    /// Dataset to write after --rename and --delete
-    #[arg(short = 'o', long = "out", value_name = "FILE.adm")]
+    /// Dataset to write after --rename and --delete [default: none, they need it]
+    #[arg(short = 'o', long = "out", value_name = "FILE.adm", value_parser = piped::output("adm"))]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     /// Print the list as JSON
     #[arg(long)]
     json: bool,
@@ -71,10 +76,7 @@ pub fn run(args: &Args) -> Outcome {
         return Err(Failure::usage(what));
     }
     if let Some(out) = &args.out {
-        if same_file(out, &args.model) {
-            let what = "the output is the input, which is never overwritten";
-            return Err(Failure::usage(what));
-        }
+        args.writing.check([out])?;
         for (element, name) in &args.rename {
             let id = reading.model.find_element(element)?;
             reading = renamed(&reading, id, name)?;
@@ -87,8 +89,8 @@ pub fn run(args: &Args) -> Outcome {
         let deleted = deleted.collect::<Result<Vec<ElementId>, Diagnostic>>()?;
         reading = without(&reading, &deleted)?;
         let bytes = reading.dataset.source.encode(reading.dataset.to_text());
-        results::write_bytes(out, &bytes)?;
-        remark(out.display());
+        args.writing.bytes(out, &bytes)?;
+        remark(disk::text(&out));
         let is_error = |d: &&Diagnostic| d.severity == Severity::Error;
         let mistakes: Vec<Diagnostic> =
             (reading.diagnostics.iter().filter(is_error).cloned()).collect();

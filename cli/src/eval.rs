@@ -2,6 +2,7 @@
 
 use super::formula::{Formula, Setting, derivative_names, give, times};
 use super::render::Sources;
+use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, anatomy, complain, plot, say};
 use cognate::diagnostic::Diagnostic;
 use cognate::expr::Profile;
@@ -33,7 +34,7 @@ pub struct Args {
     /// Values given without their option, which is told
     #[arg(hide = true)]
     further: Vec<String>,
-    /// Time, or a range first:last:step
+    /// Time, or a range first:last:step [default: none, for expressions without TIME]
     #[arg(long, value_name = "T|A:B:STEP", allow_hyphen_values = true)]
     time: Option<String>,
     /// Print the derivative over time of this order; in a table, up to this order
@@ -47,23 +48,26 @@ pub struct Args {
     #[arg(long, value_enum, default_value = "adams")]
     profile: ProfileName,
     /// States of markers: {"12": {"r": [x,y,z], "v": …, "w": …, "a": …, "al": …, "e313":
-    /// [psi,theta,phi]}}
+    /// [psi,theta,phi]}} [default: none]
     #[arg(long, value_name = "FILE.json")]
     markers: Option<PathBuf>,
-    /// Data of splines: {"1": {"x": […], "y": […]}}
+    /// Data of splines: {"1": {"x": […], "y": […]}} [default: none]
     #[arg(long, value_name = "FILE.json")]
     splines: Option<PathBuf>,
     /// Points of curves: {"1": {"points": [[x,y,z], …], "closed": false, "control": false, "order":
-    /// 4}}
+    /// 4}} [default: none]
     #[arg(long, value_name = "FILE.json")]
     curves: Option<PathBuf>,
-    /// Give a value to a function of the model, such as 'VARVAL(3)=2.5' (repeatable)
+    /// Give a value to a function of the model, such as 'VARVAL(3)=2.5' (repeatable) [default:
+    /// none]
     #[arg(long, value_name = "CALL=VALUE")]
     set: Vec<String>,
     /// Plot value and derivatives to a file (.svg, .png or .pdf), in place of the table; with
-    /// --json, both
+    /// --json, both [default: no plot]
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -217,7 +221,7 @@ fn evaluate(args: &Args, text: &str) -> Outcome {
             }
             .into(),
         );
-        let written = plot::write_one(&picture, file)?;
+        let written = plot::write_one(&picture, file, args.writing)?;
         if !args.json {
             return Ok(written);
         }

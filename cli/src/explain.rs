@@ -8,7 +8,7 @@ use cognate::analysis::verify::idle::Idle;
 use cognate::analysis::verify::outline::{Outline, outline};
 use cognate::dataset::manual;
 use cognate::diagnostic::codes::{all, code};
-use cognate::diagnostic::{Cause, Diagnostic, near_names};
+use cognate::diagnostic::{Cause, Diagnostic, counted, near_names};
 use cognate::results::json as json_record;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -254,24 +254,32 @@ fn as_text(o: &Outline) -> String {
     let warnings: Vec<String> = o.warnings.iter().map(ToString::to_string).collect();
     list("warnings", &warnings);
     out += &format!(
-        "recorded\n  {} operations for the rates, by {}\n",
-        o.operations.0, o.elimination
+        "recorded\n  {} for the rates, by {}\n",
+        counted(o.operations.0, "operation"),
+        o.elimination
     );
     for (element, operations) in o.costs.iter().take(MOST_COSTS) {
-        out += &format!("  {operations} operations of {element}\n");
+        out += &format!("  {} of {element}\n", counted(*operations, "operation"));
     }
     if let Some(rest) = o.costs.get(MOST_COSTS..).filter(|rest| !rest.is_empty()) {
         let operations: usize = rest.iter().map(|cost| cost.1).sum();
         out += &format!(
-            "  {operations} operations of {} other elements\n",
-            rest.len()
+            "  {} of {}\n",
+            counted(operations, "operation"),
+            counted(rest.len(), "other element")
         );
     }
     if o.operations.1 > 0 {
-        out += &format!("  {} operations to project onto the rows\n", o.operations.1);
+        out += &format!(
+            "  {} to project onto the rows\n",
+            counted(o.operations.1, "operation")
+        );
     }
     if o.switches > 0 {
-        out += &format!("  {} values watched for a change of branch\n", o.switches);
+        out += &format!(
+            "  {} watched for a change of branch\n",
+            counted(o.switches, "value")
+        );
     }
     out
 }

@@ -6,12 +6,13 @@ use super::configuration::commands;
 use super::run::{self, Single};
 use super::setup::{self, Asked, Setup};
 use super::verify::before_simulation;
-use super::{Exit, Failure, Outcome, remark};
+use super::writing::WritingArgs;
+use super::{Exit, Failure, Outcome, piped, remark};
 use cognate::dataset;
 use cognate::dataset::command::{Command, Step};
 use cognate::diagnostic::{Diagnostic, Severity};
+use cognate::disk;
 use cognate::model::{ElementId, ElementKind, Model, SettingsStatement};
-use cognate::results;
 use std::path::PathBuf;
 
 /// Write a model as it stands, with chosen loads, as a dataset and a command file
@@ -27,23 +28,24 @@ Examples:
   cognate export crane.adm --loads lift,gravity --end 2 --steps 200
   cognate export crane.adm --name lift --overwrite -o exchange")]
 pub struct Args {
-    /// Dataset (.adm), or command file (.acf)
+    /// Dataset (.adm), or command file (.acf); - reads a dataset from standard input
+    #[arg(value_parser = piped::model())]
     model: PathBuf,
-    /// Name of the run: of the two files, and of the results of who runs them
+    /// Name of the run: of the two files, and of the results of who runs them [default: that of the
+    /// model]
     #[arg(long, value_name = "NAME", value_parser = run::run_name)]
     name: Option<String>,
-    /// Folder that the files are written to; without it here
-    #[arg(short = 'o', long, value_name = "DIR")]
+    /// Folder that the files are written to [default: here]
+    #[arg(short = 'o', long, value_name = "DIR", value_parser = piped::refused(piped::SEVERAL))]
     out: Option<PathBuf>,
-    /// Load cases and loads, as SFORCE/3 or gravity; `all` for all loads; without it those of the
-    /// last choice
+    /// Load cases and loads, as SFORCE/3 or gravity; `all` for all loads [default: those of the
+    /// last choice]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     loads: Vec<String>,
     #[command(flatten)]
     span: SpanArgs,
-    /// Replace files of these names, but not the model itself
-    #[arg(long)]
-    overwrite: bool,
+    #[command(flatten)]
+    writing: WritingArgs,
 }
 
 /// Writes the dataset and the command file.
@@ -68,8 +70,8 @@ pub fn run(args: &Args) -> Outcome {
         .clone()
         .unwrap_or_else(|| format!("{}_export", job.base));
     let folder = args.out.clone().unwrap_or_default();
-    let files = ["adm", "acf"].map(|ending| folder.join(format!("{name}.{ending}")));
-    refuse_overwriting(args, &files)?;
+    let files = ["adm", "acf"].map(|ending| folder.join(disk::path(format!("{name}.{ending}"))));
+    args.writing.check(&files)?;
     let is_simulation = |s: &Step| matches!(s.command, Command::Simulate(_));
     let first = job
         .steps
@@ -83,8 +85,9 @@ pub fn run(args: &Args) -> Outcome {
     let absent = loads
         .iter()
         .flat_map(|l| &l.left_out)
-        .filter_map(|l| l.parse().ok());
-    leave_out(&mut model, absent.collect());
+        .filter_map(|l| setup::Load::of(&model, l).ok());
+    let absent: Vec<setup::Load> = absent.collect();
+    leave_out(&mut model, absent);
     let text = model.to_text();
     let again = dataset::read_text(&text);
     if again.failed() || again.model.to_text() != text {
@@ -95,15 +98,20 @@ pub fn run(args: &Args) -> Outcome {
         });
     }
     std::fs::create_dir_all(&folder).map_err(|e| {
-        let what = format!("{}: {e}", folder.display());
+        let what = format!("{}: {e}", disk::text(&folder));
         Diagnostic::error("file_unwritable", what)
     })?;
-    results::write_text(&files[0], &text)?;
-    results::write_text(&files[1], &commands(&files[0], &model, &left, 0.0))?;
+    args.writing.text(&files[0], &text)?;
+    let commands = commands(&files[0], &model, &left, 0.0);
+    args.writing.text(&files[1], &commands)?;
     if let Some(loads) = &loads {
         remark(setup::loads_acting(loads));
     }
-    remark(format!("{} and {}", files[0].display(), files[1].display()));
+    remark(format!(
+        "{} and {}",
+        disk::text(&files[0]),
+        disk::text(&files[1])
+    ));
     if left.is_empty() {
         remark(match is_command {
             true => "the commands hold no simulation",
@@ -121,30 +129,6 @@ impl Args {
             span: self.span,
         }
     }
-}
-
-/// Refuses to write over the model, and over other files without leave.
-fn refuse_overwriting(args: &Args, files: &[PathBuf; 2]) -> Result<(), Failure> {
-    let dataset = setup::dataset_of(&args.model)?;
-    for file in files {
-        let is_model = [&args.model, &dataset]
-            .into_iter()
-            .any(|input| super::convert::same_file(input, file));
-        if is_model {
-            let what = format!(
-                "{} is the model, which is never overwritten",
-                file.display()
-            );
-            return Err(Failure::usage(what + ": --name NAME names another"));
-        }
-        if file.exists() && !args.overwrite {
-            let what = format!("{} is there already", file.display());
-            return Err(Failure::usage(
-                what + ": --name NAME names another, --overwrite replaces it",
-            ));
-        }
-    }
-    Ok(())
 }
 
 /// Adds what the set-up says beside loads: the permitted error, and a file of results for whoever

@@ -1,8 +1,10 @@
 //! `cognate fmt`: a dataset in the style of Adams View, comments and order kept.
 
-use super::{Exit, Failure, Outcome, remark, say};
+use super::writing::WritingArgs;
+use super::{Exit, Failure, Outcome, piped, remark, say};
 use cognate::dataset::{self, Reading};
-use cognate::diagnostic::{Cause, Diagnostic, Severity};
+use cognate::diagnostic::{Diagnostic, Severity};
+use cognate::disk;
 use std::path::PathBuf;
 
 /// Write a dataset in the style of Adams View
@@ -17,14 +19,17 @@ Examples:
   cognate fmt model.adm -o tidy.adm
   cognate fmt model.adm --check          exit code 8 where the file is not formatted")]
 pub struct Args {
-    /// Dataset (.adm)
+    /// Dataset (.adm); - reads a dataset from standard input
+    #[arg(value_parser = piped::model())]
     file: PathBuf,
     /// Write nothing; exit with code 8 when the file is not formatted
     #[arg(long)]
     check: bool,
-    /// File to write; without it the text goes to standard output
-    #[arg(short, long, value_name = "OUT", conflicts_with = "check")]
+    /// File to write [default: standard output]
+    #[arg(short, long, value_name = "OUT", conflicts_with = "check", value_parser = piped::output("adm"))]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
 }
 
 /// Formats a dataset.
@@ -48,7 +53,7 @@ pub fn run(args: &Args) -> Outcome {
     if args.check {
         let same = text == reading.dataset.to_text();
         if !same {
-            remark(format!("{} is not formatted", args.file.display()));
+            remark(format!("{} is not formatted", disk::text(&args.file)));
         }
         return Ok(if same { Exit::Done } else { Exit::CheckFailed });
     }
@@ -56,14 +61,8 @@ pub fn run(args: &Args) -> Outcome {
         say(&text);
         return Ok(Exit::Done);
     };
-    if super::convert::same_file(&args.file, output) {
-        return Err(Failure::usage(
-            "the output is the input, which is never overwritten",
-        ));
-    }
-    std::fs::write(output, reading.dataset.source.encode(&text)).map_err(|e| {
-        Diagnostic::error(Cause::FileUnwritable, format!("{}: {e}", output.display()))
-    })?;
+    let bytes = reading.dataset.source.encode(&text);
+    args.writing.bytes(output, &bytes)?;
     Ok(Exit::Done)
 }
 

@@ -3,6 +3,7 @@
 use super::setup::{self, Members, Ordinate, Setup, USER_DEFINED, edit};
 use super::{Exit, Failure, Outcome, remark, say};
 use cognate::diagnostic::{Diagnostic, near_names};
+use cognate::disk;
 use cognate::results::json;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -49,7 +50,7 @@ enum Verb {
         name: String,
         /// Functions, or columns of results
         members: Vec<String>,
-        /// Groups: the group is one of groups
+        /// Groups: the group is one of groups [default: it is one of functions]
         #[arg(long, value_name = "GROUP", num_args = 1.., conflicts_with = "members")]
         groups: Vec<String>,
     },
@@ -79,19 +80,20 @@ struct FunctionArgs {
     name: String,
     #[command(flatten)]
     shape: ShapeArgs,
-    /// Its quantity: position, angle, velocity, angular velocity, acceleration, angular
-    /// acceleration, force or torque. Angles of expressions and points are in degrees
-    #[arg(long, value_name = "QUANTITY")]
+    /// Its quantity. Angles of expressions and points are in degrees [default: not said]
+    #[arg(long, value_name = "QUANTITY", value_parser = Ordinate::words(), ignore_case = true)]
     ordinate: Option<String>,
-    /// Ends of the spline: natural, not-a-knot or periodic
+    /// Ends of the spline [default: natural]
     #[arg(
         long,
         value_name = "ENDS",
+        value_parser = ["natural", "not-a-knot", "periodic"],
         requires = "points",
         conflicts_with = "slopes"
     )]
     ends: Option<String>,
-    /// Slopes of the spline at its first and its last point
+    /// Slopes of the spline at its first and its last point [default: none, --ends says how it
+    /// ends]
     #[arg(
         long,
         value_name = "A,B",
@@ -100,7 +102,7 @@ struct FunctionArgs {
         allow_negative_numbers = true
     )]
     slopes: Vec<f64>,
-    /// Group to put it into; USER_DEFINED without
+    /// Group to put it into [default: USER_DEFINED]
     #[arg(long = "in", value_name = "GROUP")]
     group: Option<String>,
 }
@@ -109,16 +111,17 @@ struct FunctionArgs {
 #[derive(clap::Args)]
 #[group(required = true, multiple = false)]
 struct ShapeArgs {
-    /// Expression of t, angles in degrees: sin cos … log ln int frac sign
+    /// Expression of t, angles in degrees: sin cos … log ln int frac sign [default: none, one of
+    /// the four is needed]
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
     expression: Option<String>,
-    /// In the language of datasets, angles in radians; may read markers
+    /// In the language of datasets, angles in radians; may read markers [default: none]
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
     direct: Option<String>,
-    /// File with a function in the language of datasets
+    /// File with a function in the language of datasets [default: none]
     #[arg(long, value_name = "FILE")]
     file: Option<String>,
-    /// Points of a cubic spline: `0,0 1,2.5 2,3`, or a file of two columns
+    /// Points of a cubic spline: `0,0 1,2.5 2,3`, or a file of two columns [default: none]
     #[arg(long, value_name = "POINTS", allow_hyphen_values = true)]
     points: Option<String>,
 }
@@ -152,7 +155,7 @@ fn create(model: &Path, name: &str, members: &[String], groups: &[String]) -> Ou
     let mut table = Table::new();
     table.insert(key, Item::Value(edit::list(names)));
     let setup = edit::change(&setup, |document| put(document, "groups", name, table))?;
-    let file = setup.file.display();
+    let file = disk::text(&setup.file);
     remark(format!("the group {name} is in {file}"));
     Ok(Exit::Done)
 }
@@ -262,7 +265,7 @@ fn function(args: &FunctionArgs) -> Outcome {
     if let Some(group) = args.group.as_deref().filter(|g| *g != USER_DEFINED) {
         new = join(&new, group, &args.name)?;
     }
-    let file = new.file.display();
+    let file = disk::text(&new.file);
     remark(format!("the function {} is in {file}", args.name));
     Ok(Exit::Done)
 }

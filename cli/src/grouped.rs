@@ -45,17 +45,9 @@ pub(super) fn columns_of(
         let columns = results.table_columns().into_iter().filter(|&c| c > 0);
         return Ok(columns.filter_map(named).collect());
     }
-    let set = results
-        .entities
-        .iter()
-        .find(|e| e.name == name || e.entity == name);
-    match set {
-        Some(set) => Ok(set
-            .components
-            .iter()
-            .filter_map(|c| named(c.column))
-            .collect()),
-        None => Err(group::unknown(setup, name)
+    match results.resolve_all(&format!("{name}.*")) {
+        Ok(columns) => Ok(columns.into_iter().filter_map(named).collect()),
+        Err(_) => Err(group::unknown(setup, name)
             .help("a run is a group too, by its name, and so is each set of results")),
     }
 }

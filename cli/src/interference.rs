@@ -1,14 +1,16 @@
 //! `cognate interference`: how near solids come to each other during a run, and whether they
 //! overlap.
 
-use super::convert::same_file;
 use super::output::StyleArgs;
+use super::recorded;
 use super::recorded::model_of;
 use super::table::Table;
-use super::{Exit, Failure, Outcome, remark, say, width};
+use super::writing::WritingArgs;
+use super::{Exit, Failure, Outcome, piped, remark, say, width};
 use cognate::analysis::interference::{Interference, Pair, interference};
 use cognate::analysis::motion::Recorded;
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use cognate::model::{ElementId, Model};
 use cognate::physics::contact::query::separation::Gap;
 use cognate::report::mechanism::Overlap;
@@ -28,25 +30,31 @@ Examples:
   cognate interference out/run.res --clearance 2            ends with 8 where a pair comes nearer
   cognate interference out/run.res --out distances.csv      all distances over time")]
 pub struct Args {
-    /// Results of the run: .res, .parquet, or .csv and .json with all parts
+    /// Results of the run: .res, .parquet, or .csv and .json with all parts; - reads .csv from
+    /// standard input, gra:- and so on others
+    #[arg(value_parser = piped::results())]
     results: PathBuf,
-    /// Two parts or GRAPHICS to look at, with a comma (repeatable); all pairs when none is given
+    /// Two parts or GRAPHICS to look at, with a comma (repeatable) [default: all pairs]
     #[arg(long = "pair", value_name = "A,B", value_parser = pair)]
     pairs: Vec<[String; 2]>,
     /// Distance that must remain; a pair that comes nearer ends the command with exit code 8
+    /// [default: nothing is demanded]
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     clearance: Option<f64>,
-    /// Dataset or command file, where it is not the one that the record of the run names
+    /// Dataset or command file [default: the one that the record of the run names]
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
-    /// Write all distances over time to a file: .csv, .res, .parquet or .json
-    #[arg(long, short, value_name = "FILE")]
+    /// Write all distances over time to a file: .csv, .res, .parquet or .json [default: they are
+    /// not written]
+    #[arg(long, short, value_name = "FILE", value_parser = piped::output("csv"))]
     out: Option<PathBuf>,
     /// Print the pairs as JSON
     #[arg(long)]
     json: bool,
     #[command(flatten)]
     style: StyleArgs,
+    #[command(flatten)]
+    writing: WritingArgs,
 }
 
 /// Reads `PART/2,GRAPHICS/3`, or two names.
@@ -62,12 +70,8 @@ fn pair(text: &str) -> Result<[String; 2], String> {
 /// # Errors
 /// When the results or their model cannot be read, or lack the motion of parts.
 pub fn run(args: &Args) -> Outcome {
-    let is_input = |out: &PathBuf| same_file(out, &args.results);
-    if args.out.as_ref().is_some_and(is_input) {
-        let what = "the output is the input, which is never overwritten";
-        return Err(Failure::usage(what));
-    }
-    let run = results::read(&args.results)?;
+    args.writing.check_beside(&args.results, &args.out)?;
+    let run = recorded::read(&args.results)?;
     let model = model_of(&args.results, args.model.as_deref())?;
     let recorded = Recorded::new(&run, &model);
     let folders = folders(args);
@@ -82,11 +86,18 @@ pub fn run(args: &Args) -> Outcome {
     for (graphics, why) in &found.left_out {
         remark(format!("{graphics} is not looked at: {why}"));
     }
+    tell_of_hulls(&found);
     if let Some(out) = &args.out {
-        results::write(&over_time(&run, &model, &found), out, args.style.style())?;
-        remark(format!("{} pairs in {}", found.pairs.len(), out.display()));
+        let table = over_time(&run, &model, &found);
+        args.writing.run(&table, out, args.style.style())?;
+        remark(format!(
+            "{} pairs in {}",
+            found.pairs.len(),
+            disk::text(&out)
+        ));
     }
     match args.json {
+        _ if args.out.as_deref().is_some_and(piped::is_output) => {}
         true => say(&results::json::text(&as_json(&run, &found))),
         false if found.pairs.is_empty() => say("no pair of solids on different parts\n"),
         false => say(&table(&run, &model, &found)),
@@ -105,6 +116,7 @@ pub fn run(args: &Args) -> Outcome {
 pub fn overlaps(model: &Model, run: &Run, folders: &[PathBuf]) -> Result<Vec<Overlap>, Failure> {
     let recorded = Recorded::new(run, model);
     let found = interference(&recorded, model, &[], folders)?;
+    tell_of_hulls(&found);
     let shown: Vec<usize> = run.table_places(run.held()).collect();
     let mut all = Vec::new();
     for pair in found.pairs {
@@ -129,6 +141,13 @@ pub fn overlaps(model: &Model, run: &Run, folders: &[PathBuf]) -> Result<Vec<Ove
         });
     }
     Ok(all)
+}
+
+/// Says of which shells something is known of their convex hull alone.
+fn tell_of_hulls(found: &Interference) {
+    for (graphics, what) in &found.hulls {
+        remark(format!("{graphics} {what}"));
+    }
 }
 
 /// Returns the folders in which files of shells are looked for: those of the model and of the
@@ -207,6 +226,7 @@ fn as_json(run: &Run, found: &Interference) -> Value {
     json!({
         "length": run.units.length,
         "pairs": found.pairs.iter().map(pair).collect::<Vec<_>>(),
+        "hulls": found.hulls.iter().map(|(id, what)| json!({ "element": id.to_string(), "what": what })).collect::<Vec<_>>(),
         "left_out": left_out.map(|(id, why)| json!({ "element": id.to_string(), "why": why })).collect::<Vec<_>>(),
     })
 }

@@ -5,9 +5,15 @@
 //! itself a moment later; one that has them is ended by its guard (`limit.rs`), which keeps them.
 
 use cognate::analysis::watch::Watch;
+use signal_hook::consts::signal::SIGINT;
+#[cfg(unix)]
+use signal_hook::consts::signal::{SIGHUP, SIGTERM};
+use signal_hook::flag;
+use std::collections::BTreeSet;
 #[cfg(unix)]
 use std::io::Read;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 /// the flag that loops poll; Ctrl-C sets it once [`install`] has been called
@@ -19,6 +25,8 @@ static HAS_RESULTS: AtomicBool = AtomicBool::new(false);
 
 /// Time that a run without results may go on without seeing the request to stop.
 pub const PATIENCE: Duration = Duration::from_millis(700);
+/// Time between two looks at the flag.
+const LOOK: Duration = Duration::from_millis(50);
 
 /// Returns true if the user asked to stop.
 pub fn requested() -> bool {
@@ -56,41 +64,34 @@ pub fn results_begin() {
 
 /// Lets Ctrl-C set the flag from now on; where that is not possible it ends the program, as before.
 pub fn install() {
-    // a second installation, or a system without signals, keeps the usual behaviour
-    let _ = ctrlc::set_handler(|| {
-        if STOP.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    });
+    hear(SIGINT);
 }
 
-/// Lets Ctrl-C and other requests to end set the flag from now on, as [`install`], and ends a run
+/// Lets Ctrl-C and other requests to end (SIGTERM, SIGHUP) set the flag from now on, and ends a run
 /// that has no results and does not see it.
+///
+/// One of the others that whoever started this program wants it to ignore (`nohup`) stays ignored.
 pub fn install_for_run() {
+    hear(SIGINT);
     #[cfg(unix)]
-    listen_for_ends();
-    #[cfg(not(unix))]
-    let _ = ctrlc::set_handler(ask_to_stop);
-}
-
-fn ask_to_stop() {
-    if STOP.swap(true, Ordering::Relaxed) {
-        std::process::exit(130);
+    {
+        let ignored = ignored_signals();
+        let is_heard = |signal: &i32| ignored & (1 << (signal - 1)) == 0;
+        ([SIGTERM, SIGHUP].into_iter().filter(is_heard)).for_each(hear);
     }
-    std::thread::spawn(end_unless_seen);
+    // where no thread can be had, a run ends where it looks
+    let _ = std::thread::Builder::new().spawn(end_unless_seen);
 }
 
-/// Listens for Ctrl-C, and for SIGTERM and SIGHUP, but for one of these that whoever started this
-/// program wants it to ignore (`nohup`).
-#[cfg(unix)]
-fn listen_for_ends() {
-    use signal_hook::consts::signal::{SIGHUP, SIGINT, SIGTERM};
-    let ignored = ignored_signals();
-    let heard = [SIGINT, SIGTERM, SIGHUP].into_iter();
-    let heard = heard.filter(|&signal| signal == SIGINT || ignored & (1 << (signal - 1)) == 0);
-    // where that is not possible they end the program, as before
-    if let Ok(mut signals) = signal_hook::iterator::Signals::new(heard) {
-        std::thread::spawn(move || signals.forever().for_each(|_| ask_to_stop()));
+/// Lets a signal set the flag; the second one ends the program at once.
+fn hear(signal: i32) {
+    /// signals that are heard: heard twice, the first would be the second
+    static HEARD: Mutex<BTreeSet<i32>> = Mutex::new(BTreeSet::new());
+    let mut heard = HEARD.lock().unwrap_or_else(PoisonError::into_inner);
+    if heard.insert(signal) {
+        let ends = flag::register_conditional_shutdown(signal, 130, &STOP);
+        // where that is not possible it ends the program, as before
+        let _ = ends.and_then(|_| flag::register(signal, &STOP));
     }
 }
 
@@ -110,7 +111,11 @@ fn ignored_signals() -> u64 {
         .unwrap_or(0)
 }
 
+/// Waits for a request to stop; ends a run that does not see it.
 fn end_unless_seen() {
+    while !STOP.load(Ordering::Relaxed) {
+        std::thread::sleep(LOOK);
+    }
     std::thread::sleep(PATIENCE);
     if SEEN.load(Ordering::Relaxed) {
         return;
@@ -119,6 +124,7 @@ fn end_unless_seen() {
         super::remark("interrupted: ends with the next step; Ctrl-C again ends at once");
     } else {
         super::remark("interrupted before there were results: nothing was written");
+        super::piped::end();
         std::process::exit(130);
     }
 }

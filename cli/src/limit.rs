@@ -6,7 +6,7 @@
 //! earlier simulations have left, and ends the process.
 
 use super::output::Tables;
-use super::{Exit, complain, interrupt, remark, summary};
+use super::{Exit, complain, interrupt, piped, remark, summary};
 use cognate::analysis::session::{Activity, Session};
 use cognate::analysis::work_limit::ProcessClock;
 use cognate::dataset::command::{Command, Step};
@@ -110,7 +110,12 @@ impl Guard {
             clock,
         };
         let watched = guard.clone();
-        std::thread::spawn(move || watched.watch());
+        let watch = move || watched.watch();
+        if std::thread::Builder::new().spawn(watch).is_err() {
+            remark(
+                "no thread can be had here: nothing watches the run, which ends early between its steps alone",
+            );
+        }
         guard
     }
 
@@ -229,6 +234,7 @@ fn end(shared: &mut Shared, ending: Ending) -> ! {
             Exit::Unwritable
         }
     };
+    piped::end();
     std::process::exit(exit.code().into())
 }
 

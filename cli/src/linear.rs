@@ -1,14 +1,19 @@
 //! `cognate linear`: small motions of a model about a state, as eigenvalues and as a linear system.
 
 use super::arguments::UnsolvedArgs;
-use super::{Exit, Failure, Outcome, interrupt, modes, remark, run, say, summary, width};
+use super::writing::WritingArgs;
+use super::{Exit, Failure, Outcome, interrupt, modes, piped, remark, run, say, summary, width};
 use cognate::analysis::linear::Wanted;
 use cognate::analysis::session::script::obey;
+use cognate::analysis::session::state;
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::watch::Watch;
+use cognate::dataset::command::{Command, Linear, Step};
 use cognate::diagnostic::{Cause, Diagnostic};
-use cognate::results::{self, Status, json};
-use std::path::PathBuf;
+use cognate::disk;
+use cognate::model::{ElementId, ElementKind};
+use cognate::results::{Status, json};
+use std::path::{Path, PathBuf};
 
 /// Linearize a model: eigenvalues, mode shapes, and the matrices A, B, C, D between its plant
 /// inputs and outputs
@@ -19,7 +24,9 @@ Examples:
   cognate linear pendulum.adm --static --no-damping
   cognate linear plant.acf --out results        after the simulations of the command file")]
 pub struct Args {
-    /// Dataset (.adm), or command file (.acf) whose simulations lead to the state
+    /// Dataset (.adm), or command file (.acf) whose simulations lead to the state; - reads a
+    /// dataset from standard input
+    #[arg(value_parser = piped::model())]
     model: PathBuf,
     /// About the equilibrium next to the initial configuration
     #[arg(long = "static")]
@@ -27,15 +34,18 @@ pub struct Args {
     /// Leave out what depends on velocities
     #[arg(long)]
     no_damping: bool,
-    /// PINPUT whose VARIABLEs are the inputs (all when not given)
-    #[arg(long, value_name = "ID")]
-    pinput: Option<u32>,
-    /// POUTPUT whose VARIABLEs are the outputs (all when not given)
-    #[arg(long, value_name = "ID")]
-    poutput: Option<u32>,
-    /// Folder that NAME_linear.json and NAME_linear.m are written to
-    #[arg(short = 'o', long, value_name = "DIR")]
+    /// PINPUT whose VARIABLEs are the inputs, by its number or name [default: all]
+    #[arg(long, value_name = "ELEMENT")]
+    pinput: Option<String>,
+    /// POUTPUT whose VARIABLEs are the outputs, by its number or name [default: all]
+    #[arg(long, value_name = "ELEMENT")]
+    poutput: Option<String>,
+    /// Folder that NAME_linear.json and NAME_linear.m are written to [default: they are not
+    /// written]
+    #[arg(short = 'o', long, value_name = "DIR", value_parser = piped::refused(piped::SEVERAL))]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     #[command(flatten)]
     unsolved: UnsolvedArgs,
     /// Print everything as JSON
@@ -64,7 +74,10 @@ pub fn run(args: &Args) -> Outcome {
     } else {
         (run::read(&args.model)?, run::stem(&args.model), Vec::new())
     };
-    let options = args.unsolved.given_to(Options::default());
+    let options = args.unsolved.given_to(Options {
+        named_only: true,
+        ..Options::default()
+    });
     let mut session = Session::new(reading.model, &base, options);
     session.folders = args
         .model
@@ -85,9 +98,17 @@ pub fn run(args: &Args) -> Outcome {
         remark(&session.run.record.stop_reason);
         return Ok(run::exit(status));
     }
+    let number = |option: &str, kind: ElementKind, text: &Option<String>| {
+        let found = text.as_ref().map(|text| {
+            let found = session.model.find_of(&[kind], text);
+            found.map_err(|d| Failure::at_argument(option, text, d))
+        });
+        let found: Option<ElementId> = found.transpose()?;
+        Ok::<_, Failure>(found.map(|id| id.number))
+    };
     let wanted = Wanted {
-        inputs: args.pinput,
-        outputs: args.poutput,
+        inputs: number("--pinput", ElementKind::Pinput, &args.pinput)?,
+        outputs: number("--poutput", ElementKind::Poutput, &args.poutput)?,
         no_damping: args.no_damping,
         shapes: None,
     };
@@ -106,37 +127,35 @@ pub fn run(args: &Args) -> Outcome {
     }
     session.linear = vec![(None, true, found)];
     if let Some(dir) = &args.out {
-        for (name, text) in files(&session) {
-            let path = dir.join(name);
-            if let Some(folder) = path.parent() {
-                std::fs::create_dir_all(folder).map_err(|e| {
-                    Diagnostic::error(Cause::FileUnwritable, format!("{}: {e}", folder.display()))
-                })?;
-            }
-            results::write_text(&path, &text)?;
-            remark(format!("wrote {}", path.display()));
-        }
+        write(dir, files(&session), args.writing)?;
     }
     Ok(Exit::Done)
+}
+
+/// Writes files into a folder, which is made if it is not there.
+fn write(dir: &Path, files: Vec<(String, String)>, writing: WritingArgs) -> Result<(), Failure> {
+    let place = |(name, text)| (dir.join(disk::path(name)), text);
+    let files: Vec<(PathBuf, String)> = files.into_iter().map(place).collect();
+    writing.check(files.iter().map(|(path, _)| path))?;
+    for (path, text) in files {
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(|e| {
+                let what = format!("{}: {e}", disk::text(&folder));
+                Diagnostic::error(Cause::FileUnwritable, what)
+            })?;
+        }
+        writing.text(&path, &text)?;
+        remark(format!("wrote {}", disk::text(&path)));
+    }
+    Ok(())
 }
 
 /// Returns names and texts of the files of the linear systems that a session has found.
 pub fn files(session: &Session) -> Vec<(String, String)> {
     let mut files = Vec::new();
-    let mut own = 0;
-    for (file, matrices, found) in &session.linear {
-        let name = match file {
-            Some(file) if *file != session.run.name => file.clone(),
-            _ => {
-                own += 1;
-                let number = if own > 1 {
-                    own.to_string()
-                } else {
-                    String::new()
-                };
-                format!("{}_linear{number}", session.run.name)
-            }
-        };
+    let named = session.linear.iter().map(|(file, ..)| file.as_deref());
+    let names = names(&session.run.name, named);
+    for (name, (_, matrices, found)) in names.into_iter().zip(&session.linear) {
         let mut texts = vec![("json", json::text(&found.json()))];
         if *matrices {
             texts.push(("m", found.matlab()));
@@ -146,4 +165,50 @@ pub fn files(session: &Session) -> Vec<(String, String)> {
         }
     }
     files
+}
+
+/// Returns the names of the files of linear systems, without their endings: those that commands
+/// give, else that of the run with a number.
+fn names<'f>(run: &str, files: impl Iterator<Item = Option<&'f str>>) -> Vec<String> {
+    let mut own = 0;
+    files
+        .map(|file| match file {
+            Some(file) if file != run => file.to_owned(),
+            _ => {
+                own += 1;
+                let number = if own > 1 {
+                    own.to_string()
+                } else {
+                    String::new()
+                };
+                format!("{run}_linear{number}")
+            }
+        })
+        .collect()
+}
+
+/// Returns the names of the files that commands of a run ask for: linear systems, saved states.
+pub fn named_by(run: &str, steps: &[Step]) -> Vec<String> {
+    let linear = steps.iter().filter_map(|step| match &step.command {
+        Command::Linear(linear) => Some(linear),
+        _ => None,
+    });
+    let named = names(run, linear.clone().map(|linear| linear.file.as_deref()));
+    let matrices = |linear: &Linear| linear.state_matrices || !linear.eigensolution;
+    let endings = linear.map(|linear| {
+        if matrices(linear) {
+            &["json", "m"][..]
+        } else {
+            &["json"]
+        }
+    });
+    let files = named
+        .iter()
+        .zip(endings)
+        .flat_map(|(name, endings)| endings.iter().map(move |ending| format!("{name}.{ending}")));
+    let saved = steps.iter().filter_map(|step| match &step.command {
+        Command::Save(Some(name)) => Some(state::file_name(name)),
+        _ => None,
+    });
+    files.chain(saved).collect()
 }

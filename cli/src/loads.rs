@@ -8,7 +8,9 @@ use super::{Exit, Failure, Outcome, remark, say, width};
 use clap::ValueEnum;
 use cognate::analysis::session::Chosen;
 use cognate::diagnostic::{Diagnostic, near_names};
+use cognate::disk;
 use cognate::model::Model;
+use cognate::results::format::Format;
 use cognate::results::json;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -98,16 +100,17 @@ struct SetupArgs {
     no_equilibrium: bool,
     #[command(flatten)]
     integration: IntegrationArgs,
-    /// Formats of the tables
-    #[arg(long = "format", value_name = "NAME", value_delimiter = ',')]
+    /// Formats of the tables [default: as before]
+    #[arg(long = "format", value_name = "NAME", value_delimiter = ',', value_parser = Format::names(true), ignore_case = true)]
     formats: Vec<String>,
     /// Record only this element, as JOINT/3 or by its name, or this kind, as JOINT (repeatable)
+    /// [default: as before]
     #[arg(long, value_name = "ELEMENT", value_delimiter = ',')]
     only: Vec<String>,
     /// Record velocities and accelerations of the bodies' centres of mass
     #[arg(long)]
     body_motion: bool,
-    /// A further column: any expression (repeatable)
+    /// A further column: any expression (repeatable) [default: as before]
     #[arg(long = "column", value_name = "EXPR")]
     columns: Vec<String>,
     /// Forget the set-up before, but the choice of loads
@@ -144,7 +147,8 @@ fn opened(model: &Path) -> Result<(Model, Setup), Failure> {
 /// Makes or changes a load case, after its loads were looked for in the model.
 fn create(model: &Path, name: &str, loads: &[String]) -> Outcome {
     let (model, setup) = opened(model)?;
-    if name.eq_ignore_ascii_case("all") || name.parse::<Load>().is_ok() {
+    let is_load = Load::is_written(name) || Load::named(&model, name).is_ok();
+    if name.eq_ignore_ascii_case("all") || is_load {
         let what = format!("`{name}` is what a load is called, and no name for a load case");
         return Err(Failure::usage(what));
     }
@@ -152,7 +156,7 @@ fn create(model: &Path, name: &str, loads: &[String]) -> Outcome {
     let is_new = setup.case(name).is_none();
     let setup = edit::set_case(&setup, name, loads)?;
     let done = if is_new { "is in" } else { "is changed in" };
-    remark(format!("{name} {done} {}", setup.file.display()));
+    remark(format!("{name} {done} {}", disk::text(&setup.file)));
     Ok(Exit::Done)
 }
 
@@ -179,7 +183,10 @@ fn remove(model: &Path, names: &[String]) -> Outcome {
     }
     for name in names {
         setup = edit::remove(&setup, "cases", name)?;
-        remark(format!("{name} is removed from {}", setup.file.display()));
+        remark(format!(
+            "{name} is removed from {}",
+            disk::text(&setup.file)
+        ));
     }
     Ok(Exit::Done)
 }
@@ -204,16 +211,28 @@ fn choose(model: &Path, loads: &[String]) -> Outcome {
 
 /// Lets a function give a load, or takes it away again.
 fn drive(model: &Path, load: &str, function: Option<&str>) -> Outcome {
-    let (_, before) = opened(model)?;
+    let (opened_model, before) = opened(model)?;
+    let target = setup::target_of(&opened_model, load);
+    // the file may call it otherwise
+    let is_it = |name: &str| match (&target, setup::target_of(&opened_model, name)) {
+        (Ok(target), Ok(other)) => *target == other,
+        _ => name == load,
+    };
+    let mut driven = before.driven.iter().map(|(target, _)| target.text.as_str());
+    let known = driven.find(|name| is_it(name)).map(str::to_owned);
     let Some(function) = function else {
-        if before.driven.iter().all(|(target, _)| target.text != load) {
+        let Some(known) = known else {
             let known = before.driven.iter().map(|(target, _)| target.text.as_str());
             return Err(unknown("load with a function of yours", load, known).into());
-        }
-        edit::remove(&before, "loads", load)?;
+        };
+        edit::remove(&before, "loads", &known)?;
         remark(format!("{load} has the function of the dataset again"));
         return Ok(Exit::Done);
     };
+    if let Err(d) = target {
+        return Err(Failure::at_argument("LOAD", load, d));
+    }
+    let load = known.as_deref().unwrap_or(load);
     let after = edit::change(&before, |document| {
         let loads = edit::table(document, "loads");
         edit::set(loads, load, function.into());
@@ -223,7 +242,7 @@ fn drive(model: &Path, load: &str, function: Option<&str>) -> Outcome {
         Ok(_) => {
             remark(format!(
                 "{load} is given by {function} in {}",
-                after.file.display()
+                disk::text(&after.file)
             ));
             Ok(Exit::Done)
         }
@@ -321,11 +340,11 @@ fn list(file: &Path, as_json: bool) -> Outcome {
         names.filter(|name| holds(name)).collect()
     };
     let function = |load: &Load| -> Vec<String> {
-        let load = load.to_string();
-        let own = setup
-            .driven
-            .iter()
-            .filter(|(target, _)| target.text.split('.').next() == Some(load.as_str()));
+        let is_of = |target: &str| match (setup::target_of(&model, target), *load) {
+            (Ok((id, _)), Load::Element(own)) => id == own,
+            _ => false,
+        };
+        let own = (setup.driven.iter()).filter(|(target, _)| is_of(&target.text));
         own.map(|(_, name)| name.text.clone()).collect()
     };
     if as_json {
@@ -335,7 +354,7 @@ fn list(file: &Path, as_json: bool) -> Outcome {
             json!({ "name": c.name.text, "loads": loads })
         };
         say(&json::text(&json!({
-            "file": setup.exists().then(|| setup.file.display().to_string()),
+            "file": setup.exists().then(|| disk::text(&setup.file)),
             "loads": all.iter().map(load).collect::<Vec<_>>(),
             "cases": setup.cases.iter().map(case).collect::<Vec<Value>>(),
             "chosen": names,

@@ -12,6 +12,7 @@ mod arguments;
 mod assembly;
 mod card;
 mod check;
+mod completions;
 mod configuration;
 mod convert;
 mod data;
@@ -23,6 +24,7 @@ mod example;
 mod explain;
 mod export;
 mod fmt;
+mod foreseen;
 mod formula;
 mod functions;
 mod group;
@@ -39,6 +41,7 @@ mod modes;
 mod motion;
 mod moved;
 mod output;
+mod piped;
 mod plot;
 mod progress;
 mod recorded;
@@ -55,18 +58,31 @@ mod sweep;
 mod table;
 mod verify;
 mod width;
+mod writing;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use cognate::analysis::stack;
 use cognate::dataset::Dataset;
-use cognate::diagnostic::{Cause, Diagnostic, Error};
+use cognate::diagnostic::{Cause, Diagnostic, Error, Span};
+use cognate::disk;
 use render::Sources;
 use std::io::Write;
 use std::process::ExitCode;
 
 /// The ADAMS function language and the multibody solver that speaks it.
 #[derive(Parser)]
-#[command(name = "cognate", version, disable_help_subcommand = true, arg_required_else_help = true, after_help = EXIT_CODES)]
+#[command(name = "cognate", version, arg_required_else_help = true, after_help = EXIT_CODES, max_term_width = 100)]
 struct Cli {
+    /// Colours in help, messages and pictures: auto has them where a person reads and NO_COLOR is
+    /// not set
+    #[arg(
+        long,
+        global = true,
+        value_name = "WHEN",
+        value_enum,
+        default_value = "auto"
+    )]
+    color: clap::ColorChoice,
     #[command(subcommand)]
     verb: Verb,
 }
@@ -78,6 +94,7 @@ struct Cli {
 enum Verb {
     Animate(animate::Args),
     Check(check::Args),
+    Completions(completions::Args),
     Configuration(configuration::Args),
     Convert(convert::Args),
     Draw(draw::Args),
@@ -92,11 +109,14 @@ enum Verb {
     Interference(interference::Args),
     Linear(linear::Args),
     Loads(loads::Args),
+    Man(completions::ManArgs),
     Mdi(mdi::Args),
     Motion(motion::Args),
+    #[command(aliases = ["graph", "chart"])]
     Plot(plot::Args),
     Repl(repl::Args),
     Report(report::Args),
+    #[command(aliases = ["solve", "simulate"])]
     Run(run::Args),
     Runs(runs::Args),
     Statements(statements::Args),
@@ -105,8 +125,8 @@ enum Verb {
 }
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 done, 1 our mistake, 2 usage, 3 input (syntax, names), 4 model (freedom, contradiction, inertia),
-5 no equilibrium, 6 integration stopped early, 7 limit (time, memory, steps), 8 a check failed,
+Exit codes: 0 done, 1 a mistake in cognate itself, 2 usage, 3 input (syntax, names), 4 model (freedom, contradiction, inertia), \
+5 no equilibrium, 6 integration stopped early, 7 limit (time, memory, steps), 8 a check failed, \
 9 results could not be written, 130 interrupted.";
 
 /// The outcome of a command.
@@ -137,6 +157,15 @@ pub enum Exit {
 }
 
 impl Exit {
+    /// Returns the exit of a command that a mistake ends: one in the input, in the command, or a
+    /// file that cannot be written.
+    pub fn of(diagnostic: &Diagnostic) -> Self {
+        match diagnostic {
+            d if d.is(Cause::FileUnwritable) => Exit::Unwritable,
+            d if d.is_any(&[Cause::FileExists, Cause::IsInput]) => Exit::Usage,
+            _ => Exit::Input,
+        }
+    }
     /// Returns its number.
     pub fn code(self) -> u8 {
         match self {
@@ -169,12 +198,8 @@ pub struct Failure {
 impl From<Diagnostic> for Failure {
     /// A mistake in the input, or a file that cannot be written.
     fn from(diagnostic: Diagnostic) -> Self {
-        let exit = match diagnostic.is(Cause::FileUnwritable) {
-            true => Exit::Unwritable,
-            false => Exit::Input,
-        };
         Self {
-            exit,
+            exit: Exit::of(&diagnostic),
             diagnostics: vec![diagnostic],
             sources: Sources::default(),
         }
@@ -207,6 +232,31 @@ impl Failure {
         let located = diagnostics.into().into_iter().map(|d| dataset.locate(d));
         Self::in_files(Exit::Model, located.collect())
     }
+    /// Creates a failure from a mistake in an argument of the command line, which is shown with its
+    /// place.
+    pub fn at_argument(argument: &str, text: &str, mistake: Diagnostic) -> Self {
+        Self::at_arguments(argument, text, vec![mistake])
+    }
+    /// Creates a failure from mistakes in an argument of the command line.
+    pub fn at_arguments(argument: &str, text: &str, mistakes: Vec<Diagnostic>) -> Self {
+        let placed = |d: Diagnostic| {
+            let d = match d.span {
+                Some(_) => d,
+                None => d.at(text, Span::new(0, text.len())),
+            };
+            Diagnostic {
+                file: Some(argument.to_owned()),
+                ..d
+            }
+        };
+        let mut sources = Sources::default();
+        sources.add(argument, text);
+        Self {
+            exit: Exit::Input,
+            diagnostics: mistakes.into_iter().map(placed).collect(),
+            sources,
+        }
+    }
     /// Creates a failure for a command that contradicts itself.
     pub fn usage(message: impl Into<String>) -> Self {
         Self {
@@ -219,19 +269,18 @@ impl Failure {
 /// The result of a verb.
 pub type Outcome = Result<Exit, Failure>;
 
-/// Stack of the thread that does the work, in bytes; what is not used is not taken.
-const STACK_BYTES: usize = 256 << 20;
-
 /// Runs the command that the arguments of the process name.
 fn main() -> ExitCode {
     let cli = parsed();
+    render::choose_colours(cli.color);
+    disk::remember_inputs();
     if !matches!(cli.verb, Verb::Sweep(_)) {
         memory::serve_one_thread();
     }
     // the process ends where its work does: nobody waits until the stack is taken down
     let work = || -> Exit { std::process::exit(obey(&cli).code().into()) };
     let exit = std::thread::scope(|scope| {
-        let worker = std::thread::Builder::new().stack_size(STACK_BYTES);
+        let worker = std::thread::Builder::new().stack_size(stack::bytes(1));
         match worker.spawn_scoped(scope, work) {
             Ok(worker) => worker.join().unwrap_or(Exit::Bug),
             // a system that has no room for the stack has room for most models
@@ -241,9 +290,29 @@ fn main() -> ExitCode {
     ExitCode::from(exit.code())
 }
 
+/// Returns all commands and options.
+fn command() -> clap::Command {
+    Cli::command()
+}
+
+/// Returns the choice of colours among arguments: help and mistakes in them have it, too.
+fn colours(arguments: impl Iterator<Item = std::ffi::OsString>) -> clap::ColorChoice {
+    let mut words = arguments.map(|word| word.to_string_lossy().into_owned());
+    let mut chosen = None;
+    while let Some(word) = words.next().filter(|word| word != "--") {
+        chosen = match word.strip_prefix("--color") {
+            Some("") => words.next(),
+            Some(rest) => rest.strip_prefix('=').map(str::to_owned).or(chosen),
+            None => chosen,
+        };
+    }
+    let choice = chosen.and_then(|word| clap::ValueEnum::from_str(&word, false).ok());
+    choice.unwrap_or_default()
+}
+
 /// Returns the arguments of the process; ends it where they are not understood or ask for help.
 fn parsed() -> Cli {
-    let mut command = Cli::command();
+    let mut command = command().color(colours(std::env::args_os()));
     let first = std::env::args_os().nth(1).unwrap_or_default();
     if !command
         .get_subcommands()
@@ -261,6 +330,7 @@ fn obey(cli: &Cli) -> Exit {
     let verb = std::panic::AssertUnwindSafe(|| match &cli.verb {
         Verb::Animate(args) => animate::run(args),
         Verb::Check(args) => check::run(args),
+        Verb::Completions(args) => completions::run(args),
         Verb::Configuration(args) => configuration::run(args),
         Verb::Convert(args) => convert::run(args),
         Verb::Draw(args) => draw::run(args),
@@ -275,6 +345,7 @@ fn obey(cli: &Cli) -> Exit {
         Verb::Interference(args) => interference::run(args),
         Verb::Linear(args) => linear::run(args),
         Verb::Loads(args) => loads::run(args),
+        Verb::Man(args) => completions::man(args),
         Verb::Mdi(args) => mdi::run(args),
         Verb::Motion(args) => motion::run(args),
         Verb::Plot(args) => plot::run(args),
@@ -286,7 +357,8 @@ fn obey(cli: &Cli) -> Exit {
         Verb::Sweep(args) => sweep::run(args),
         Verb::Verify(args) => verify::run(args),
     });
-    match std::panic::catch_unwind(verb) {
+    let verb = || piped::begin().and_then(|()| verb());
+    let exit = match std::panic::catch_unwind(std::panic::AssertUnwindSafe(verb)) {
         Ok(Ok(exit)) => exit,
         Ok(Err(failure)) => {
             complain(&failure.diagnostics, &failure.sources);
@@ -300,14 +372,17 @@ fn obey(cli: &Cli) -> Exit {
             );
             Exit::Bug
         }
-    }
+    };
+    piped::end();
+    exit
 }
 
 /// Prints diagnostics on standard error.
 pub fn complain(diagnostics: &[Diagnostic], sources: &Sources) {
     let text = render::render(diagnostics, sources, render::colour_on_stderr());
+    let text = piped::named(text);
     // a closed stream is no mistake
-    let _ = std::io::stderr().write_all(text.as_bytes());
+    let _ = std::io::stderr().write_all(&disk::bytes(&text));
 }
 
 /// Prints diagnostics about files on standard error, with their places.
@@ -317,15 +392,22 @@ pub fn complain_in_files(diagnostics: &[Diagnostic]) {
 
 /// Prints on standard error a remark about what was done.
 pub fn remark(message: impl std::fmt::Display) {
-    let _ = writeln!(std::io::stderr(), "{message}");
+    let line = format!("{}\n", piped::named(message.to_string()));
+    // a closed stream is no mistake
+    let _ = std::io::stderr().write_all(&disk::bytes(&line));
 }
 
 /// Prints results on standard output. When the reader is gone (`| head`), the program ends quietly;
 /// when they cannot be written otherwise (a full disk), it says so and ends with
 /// [`Exit::Unwritable`].
 pub fn say(text: &str) {
+    say_bytes(&disk::bytes(text));
+}
+
+/// Prints results that need not be text, as [`say`] does.
+pub fn say_bytes(bytes: &[u8]) {
     let mut out = std::io::stdout().lock();
-    let Err(e) = out.write_all(text.as_bytes()).and_then(|()| out.flush()) else {
+    let Err(e) = out.write_all(bytes).and_then(|()| out.flush()) else {
         return;
     };
     if e.kind() == std::io::ErrorKind::BrokenPipe {
@@ -337,4 +419,73 @@ pub fn say(text: &str) {
         &Sources::default(),
     );
     std::process::exit(Exit::Unwritable.code().into());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns a command and those below it, with their names.
+    fn all(command: &clap::Command, found: &mut Vec<(String, clap::Command)>) {
+        let name = command.get_display_name().unwrap_or("cognate").to_owned();
+        found.push((name, command.clone()));
+        (command.get_subcommands()).for_each(|below| all(below, found));
+    }
+
+    #[test]
+    fn every_option_says_its_default_and_lists_its_choices() {
+        let mut whole = command();
+        whole.build();
+        let (mut commands, mut closed) = (Vec::new(), Vec::new());
+        all(&whole, &mut commands);
+        assert!(commands.len() > 30);
+        for (name, command) in commands {
+            let shown = command.clone().render_long_help().to_string();
+            // a choice of two words may be wrapped
+            let shown = shown.split_whitespace().collect::<Vec<_>>().join(" ");
+            for option in command.get_arguments() {
+                let takes = option.get_num_args().is_some_and(|n| n.takes_values());
+                if option.is_positional() || option.is_hide_set() || !takes {
+                    continue;
+                }
+                let help = option.get_help().map(ToString::to_string);
+                let says = help.is_some_and(|help| help.contains("[default: "));
+                let is_said = says || !option.get_default_values().is_empty();
+                let long = option.get_long().unwrap_or_default();
+                assert!(is_said || option.is_required_set(), "{name} --{long}");
+                let choices = option.get_possible_values();
+                for choice in choices.iter().filter(|c| !c.is_hide_set()) {
+                    let choice = choice.get_name();
+                    assert!(shown.contains(choice), "{name} --{long}: {choice}");
+                }
+                if !choices.is_empty() {
+                    closed.push(format!("{name} --{long}"));
+                }
+            }
+        }
+        for option in [
+            "cognate-run --method",
+            "cognate-run --format",
+            "cognate-run --type",
+            "cognate-run --color",
+            "cognate-report --method",
+            "cognate-loads-setup --format",
+            "cognate-group-function --ends",
+            "cognate-group-function --ordinate",
+            "cognate-motion --as",
+        ] {
+            assert!(closed.contains(&option.to_owned()), "{option}: {closed:?}");
+        }
+    }
+
+    #[test]
+    fn the_last_choice_of_colours_before_the_end_of_options_counts() {
+        let chosen = |words: &[&str]| colours(words.iter().map(Into::into));
+        assert_eq!(chosen(&["run", "x.adm"]), clap::ColorChoice::Auto);
+        let both = ["--color=always", "run", "--color", "never"];
+        assert_eq!(chosen(&both), clap::ColorChoice::Never);
+        let behind = ["eval", "--color=never", "--", "--color=always"];
+        assert_eq!(chosen(&behind), clap::ColorChoice::Never);
+        assert_eq!(chosen(&["--color", "blue"]), clap::ColorChoice::Auto);
+    }
 }

@@ -8,10 +8,12 @@
 //! (batch); without a file the commands come from standard input.
 
 use super::run::has_commands;
+use super::writing::WritingArgs;
 use super::{Cli, Exit, Failure, Outcome, Verb, remark};
 use clap::Parser;
 use cognate::diagnostic::{Cause, Diagnostic};
-use cognate::results;
+use cognate::disk;
+use cognate::results::Writing;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -26,7 +28,8 @@ Examples:
   export SDRC_ADAMS_SOLVER=/usr/local/cognate      and the other program starts this one
   cognate mdi -c ru-standard i run.acf exit        what it calls")]
 pub struct Args {
-    /// Write the script `mdi` (and `common/mdi.bat`) that calls this program to a folder
+    /// Write the script `mdi` (and `common/mdi.bat`) that calls this program to a folder [default:
+    /// none, the words are obeyed]
     #[arg(long, value_name = "FOLDER", conflicts_with = "words")]
     install: Option<PathBuf>,
     /// The words of the other program: -c ru-standard i FILE.acf exit
@@ -55,7 +58,15 @@ pub fn run(args: &Args) -> Outcome {
         Some(file) => file,
         None => from_input()?,
     };
-    let words = ["cognate", "run", "--format", FORMATS];
+    // names lead where the other program wants them, and its files are its own to replace
+    let words = [
+        "cognate",
+        "run",
+        "--format",
+        FORMATS,
+        "--trust-paths",
+        "--overwrite",
+    ];
     let file = commands.as_os_str();
     let words = words.map(std::ffi::OsStr::new).into_iter().chain([file]);
     match Cli::try_parse_from(words).map(|cli| cli.verb) {
@@ -98,7 +109,7 @@ fn called(words: &[String]) -> Result<Option<PathBuf>, String> {
     match (whole.is_file(), files.next()) {
         (false, _) => Err(format!(
             "there is no command file {}: {usage}",
-            whole.display()
+            disk::text(&whole)
         )),
         (true, Some(more)) => Err(format!("`{more}` is not understood: {usage}")),
         (true, None) => Ok(Some(whole)),
@@ -114,11 +125,9 @@ fn from_input() -> Result<PathBuf, Failure> {
         return Err(Failure::usage(what));
     }
     let file = PathBuf::from("mdi_input.acf");
-    if file.exists() && std::fs::read_to_string(&file).ok().as_ref() != Some(&text) {
-        let what = "mdi_input.acf is there already, with other commands";
-        return Err(Failure::usage(what));
+    if std::fs::read_to_string(&file).ok().as_ref() != Some(&text) {
+        WritingArgs::default().text(&file, &text)?;
     }
-    results::write_text(&file, &text)?;
     Ok(file)
 }
 
@@ -126,7 +135,7 @@ fn from_input() -> Result<PathBuf, Failure> {
 fn install(folder: &Path) -> Outcome {
     let program = std::env::current_exe();
     let program = program.map_err(|e| unwritable(folder, &e))?;
-    let quoted = program.display().to_string().replace('\'', r"'\''");
+    let quoted = disk::text(&program).replace('\'', r"'\''");
     let scripts = [
         (
             folder.join("mdi"),
@@ -136,32 +145,32 @@ fn install(folder: &Path) -> Outcome {
         ),
         (
             folder.join("common").join("mdi.bat"),
-            batch(&program.display().to_string()),
+            batch(&disk::text(&program)),
         ),
     ];
     for (file, _) in &scripts {
         let is_ours = |text: String| text.contains(MARK);
         if file.exists() && !std::fs::read_to_string(file).is_ok_and(is_ours) {
-            let what = format!("{} is there already, and not ours", file.display());
+            let what = format!("{} is there already, and not ours", disk::text(&file));
             return Err(Failure::usage(what));
         }
     }
     for (file, text) in &scripts {
         let parent = file.parent().unwrap_or(folder);
         std::fs::create_dir_all(parent).map_err(|e| unwritable(parent, &e))?;
-        results::write_text(file, text)?;
+        Writing::new(true).bytes(file, &disk::bytes(text))?;
         make_executable(file).map_err(|e| unwritable(file, &e))?;
     }
     remark(format!(
         "{}: export SDRC_ADAMS_SOLVER={}",
-        scripts[0].0.display(),
-        folder.display()
+        disk::text(&scripts[0].0),
+        disk::text(&folder)
     ));
     Ok(Exit::Done)
 }
 
 fn unwritable(file: &Path, e: &std::io::Error) -> Diagnostic {
-    let what = format!("{}: {e}", file.display());
+    let what = format!("{}: {e}", disk::text(&file));
     Diagnostic::error(Cause::FileUnwritable, what)
 }
 

@@ -2,6 +2,7 @@
 
 use super::table::Table;
 use cognate::analysis::linear::{Linearization, Mode};
+use cognate::diagnostic::counted;
 use cognate::results::digits_of_six;
 
 /// Most modes whose shapes are drawn.
@@ -17,11 +18,7 @@ pub fn text(found: &Linearization, time: &str, width: usize) -> String {
     if found.modes.is_empty() {
         return format!("at time {at} nothing is free to vibrate\n");
     }
-    let per_time = if matches!(time, "" | "sec") {
-        "Hz".to_owned()
-    } else {
-        format!("1/{time}")
-    };
+    let [per_time, rate, turns] = units(time);
     let mut table = Table::new([
         "mode",
         "frequency",
@@ -31,7 +28,7 @@ pub fn text(found: &Linearization, time: &str, width: usize) -> String {
         "what it does",
     ]);
     table.head(
-        ["", per_time.as_str(), "ratio", "", "rad", ""]
+        ["", &per_time, "ratio", &rate, &turns, ""]
             .map(str::to_owned)
             .to_vec(),
     );
@@ -54,11 +51,19 @@ pub fn text(found: &Linearization, time: &str, width: usize) -> String {
     }
     if found.modes.len() > DRAWN {
         text += &format!(
-            "\nshapes of {} more modes: --json prints all\n",
-            found.modes.len() - DRAWN
+            "\nshapes of {}: --json prints all\n",
+            counted(found.modes.len() - DRAWN, "more mode")
         );
     }
     text
+}
+
+/// Returns the units of frequencies, of real and of imaginary parts.
+fn units(time: &str) -> [String; 3] {
+    match time {
+        "" | "sec" => ["Hz", "1/s", "rad/s"].map(str::to_owned),
+        _ => ["1/", "1/", "rad/"].map(|unit| format!("{unit}{time}")),
+    }
 }
 
 /// Returns the behaviour of a mode in words.
@@ -167,5 +172,6 @@ mod tests {
             "vibrates, falls to 1/e in 2 sec"
         );
         assert_eq!(behaviour(&mode(4.0, 0.0), "sec"), "grows by e in 0.25 sec");
+        assert_eq!(behaviour(&mode(0.0, 0.0), "sec"), "moves freely");
     }
 }

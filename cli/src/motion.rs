@@ -1,13 +1,14 @@
 //! `cognate motion`: the motion of markers and joints relative to a marker, after a run.
 
-use super::convert::same_file;
 use super::output::StyleArgs;
 use super::recorded::model_of;
-use super::{Exit, Failure, Outcome, remark, say, summary, width};
+use super::writing::WritingArgs;
+use super::{Exit, Outcome, piped, recorded, remark, say, summary, width};
 use cognate::analysis::motion::{MarkerMeasure, Recorded};
-use cognate::diagnostic::{Cause, Diagnostic};
+use cognate::diagnostic::{Cause, Diagnostic, counted};
+use cognate::disk;
 use cognate::model::{ElementId, ElementKind, Model};
-use cognate::results::{self, Component, Entity, Run};
+use cognate::results::{Component, Entity, Run};
 use std::path::PathBuf;
 
 /// Show the motion of markers or joints relative to a marker, from the results of a run
@@ -24,7 +25,9 @@ Examples:
   cognate motion out/run.parquet --of MARKER/20 --relative-to MARKER/10 --in ground --seen-from ground
   cognate plot out/run.res --y 'VX(20,10,10,10)'          one of them as a column")]
 pub struct Args {
-    /// Results of the run: .res, .parquet, or .csv and .json with all parts
+    /// Results of the run: .res, .parquet, or .csv and .json with all parts; - reads .csv from
+    /// standard input, gra:- and so on others
+    #[arg(value_parser = piped::results())]
     results: PathBuf,
     /// Marker that moves, as MARKER/20, or joint, as JOINT/3 or by its name: its I marker
     /// (repeatable)
@@ -33,23 +36,25 @@ pub struct Args {
     /// Marker that the motion is relative to
     #[arg(long, value_name = "MARKER")]
     relative_to: String,
-    /// Marker along whose axes components are, or ground
+    /// Marker along whose axes components are, or ground [default: that of --relative-to]
     #[arg(long = "in", value_name = "MARKER")]
     axes: Option<String>,
-    /// Marker from which rates are seen, or ground
+    /// Marker from which rates are seen, or ground [default: that of --relative-to]
     #[arg(long, value_name = "MARKER")]
     seen_from: Option<String>,
-    /// Kind of motion (repeatable); all that the results have when none is given
+    /// Kind of motion (repeatable) [default: all that the results have]
     #[arg(long = "as", value_enum, value_name = "KIND")]
     kinds: Vec<KindName>,
-    /// Dataset or command file, where it is not the one that the record of the run names
+    /// Dataset or command file [default: the one that the record of the run names]
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
-    /// Write the motion to a file: .csv, .res, .parquet or .json
-    #[arg(long, short, value_name = "FILE")]
+    /// Write the motion to a file: .csv, .res, .parquet or .json [default: a few rows are shown]
+    #[arg(long, short, value_name = "FILE", value_parser = piped::output("csv"))]
     out: Option<PathBuf>,
     #[command(flatten)]
     style: StyleArgs,
+    #[command(flatten)]
+    writing: WritingArgs,
 }
 
 /// A kind of motion.
@@ -112,22 +117,13 @@ enum Takes {
     Jkl,
 }
 
-/// Returns the number of the marker that is called `MARKER/20`, `20`, by its name, or `ground`.
+/// Returns the number of a marker; 0 of `ground`.
 fn marker(model: &Model, text: &str) -> Result<u32, Diagnostic> {
     if text.eq_ignore_ascii_case("ground") || text == "0" {
         return Ok(0);
     }
-    if let Ok(number) = text.parse() {
-        return Ok(number);
-    }
-    let id = model.find_element(text)?;
-    match id.kind {
-        ElementKind::Marker => Ok(id.number),
-        _ => Err(Diagnostic::error(
-            "unfit_value",
-            format!("{id} is not a marker"),
-        )),
-    }
+    let found = model.find_of(&[ElementKind::Marker], text);
+    found.map(|id| id.number)
 }
 
 /// Shows or writes the motion of markers.
@@ -137,18 +133,19 @@ fn marker(model: &Model, text: &str) -> Result<u32, Diagnostic> {
 /// part.
 pub fn run(args: &Args) -> Outcome {
     let written = args.out.as_ref();
-    if written.is_some_and(|out| same_file(out, &args.results)) {
-        let what = "the output is the input, which is never overwritten";
-        return Err(Failure::usage(what));
-    }
-    let run = results::read(&args.results)?;
+    args.writing.check_beside(&args.results, written)?;
+    let run = recorded::read(&args.results)?;
     let model = model_of(&args.results, args.model.as_deref())?;
     let group = group(args, &run, &model)?;
     match written {
         Some(out) => {
-            results::write(&group, out, args.style.style())?;
+            args.writing.run(&group, out, args.style.style())?;
             let n = group.columns.len() - 1;
-            remark(format!("{n} functions in {}", out.display()));
+            remark(format!(
+                "{} in {}",
+                counted(n, "function"),
+                disk::text(&out)
+            ));
         }
         None => {
             let n_rows = group.table_rows().count();
@@ -192,7 +189,7 @@ fn group(args: &Args, run: &Run, model: &Model) -> Result<Run, Diagnostic> {
                     Takes::Jl => format!("{function}({i},{j},{l})"),
                     Takes::Jkl => format!("{function}({i},{j},{k},{l})"),
                 };
-                let Some(measure) = MarkerMeasure::of(&text) else {
+                let Ok(Some(measure)) = MarkerMeasure::of(model, &text) else {
                     continue;
                 };
                 let mut column = match recorded.column(&text, &measure) {
@@ -248,6 +245,5 @@ fn name(model: &Model, id: ElementId) -> String {
     if id.number == 0 {
         return "ground".into();
     }
-    let named = model.element(id).and_then(|e| e.place().name.clone());
-    named.unwrap_or_else(|| format!("{}_{}", id.kind, id.number))
+    model.labels().name(model, id)
 }

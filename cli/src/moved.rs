@@ -3,23 +3,26 @@
 use super::arguments::{KindName, SpanArgs, UnsolvedArgs};
 use super::run::{self, Single};
 use super::setup::Asked;
-use super::{Failure, complain_in_files, interrupt, recorded, remark};
+use super::{Failure, complain_in_files, interrupt, piped, recorded, remark};
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::dataset::surface::Surfaces;
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use cognate::model::{ElementKind, Family, Model};
 use cognate::report::mechanism::{Dimension, Pair, Pictured};
-use cognate::results::{self, Run, Status};
+use cognate::results::{Run, Status};
 use std::path::{Path, PathBuf};
 
 /// A model or a run, as the user names it.
 #[derive(clap::Args)]
 pub struct Source {
     /// Command file (.acf), dataset (.adm), or results (.res, .parquet, .json, .gra) of a run with
-    /// all its parts
+    /// all its parts; - reads a dataset from standard input
+    #[arg(value_parser = piped::model())]
     pub file: PathBuf,
-    /// Dataset of the results; without it the one of their name beside them
+    /// Dataset of the results [default: the one of their name beside them, else that of their
+    /// record]
     #[arg(long, value_name = "FILE")]
     pub model: Option<PathBuf>,
     #[command(flatten)]
@@ -31,20 +34,22 @@ pub struct Source {
 /// Distances that a picture shows.
 #[derive(clap::Args)]
 pub struct Dimensions {
-    /// Show the distance of two markers as a dimension, as 20,10; its value changes with the
-    /// mechanism (repeatable)
+    /// Show the distance of two markers as a dimension, as 20,10 or slider.cm,10; its value changes
+    /// with the mechanism (repeatable) [default: none]
     #[arg(long = "dimension", value_name = "I,J")]
-    pairs: Vec<Pair>,
+    pairs: Vec<String>,
 }
 
 impl Dimensions {
-    /// Adds the dimensions to a picture.
+    /// Adds the dimensions to a picture of a model.
     ///
     /// # Errors
     /// When a marker does not exist, or floats.
-    pub fn added_to(&self, mut pictured: Pictured) -> Result<Pictured, Diagnostic> {
-        for &pair in &self.pairs {
-            let dimension = Dimension::new(&pictured.bodies, pair)?;
+    pub fn added_to(&self, model: &Model, mut pictured: Pictured) -> Result<Pictured, Failure> {
+        for text in &self.pairs {
+            let told = |d| Failure::at_argument("--dimension", text, d);
+            let pair = Pair::of(model, text).map_err(told)?;
+            let dimension = Dimension::new(&pictured.bodies, pair).map_err(told)?;
             pictured.dimensions.push(dimension);
         }
         Ok(pictured)
@@ -87,7 +92,7 @@ impl Source {
             self.span.refuse_beside(&self.file)?;
         }
         if !is_dataset && !run::has_commands(&self.file) {
-            let run = results::read(&self.file)?;
+            let run = recorded::read(&self.file)?;
             let (file, model) = self.model_of(&run)?;
             let folders = [file.parent(), self.file.parent()];
             let folders = folders.into_iter().flatten().map(Path::to_path_buf);
@@ -127,7 +132,7 @@ impl Source {
             .map(Path::to_path_buf)
             .into_iter()
             .collect();
-        session.run.record.model = self.file.display().to_string();
+        session.run.record.model = disk::text(&self.file);
         let dataset = job.reading.dataset;
         let status = obey(
             &mut session,

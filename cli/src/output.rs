@@ -1,10 +1,12 @@
 //! The files of a run: tables that grow while it goes on, and what is written when it is over.
 
+use super::writing::{WritingArgs, remark_on_kept};
 use super::{Failure, animate, linear, remark, summary};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use cognate::analysis::motion::marker_digest;
 use cognate::analysis::session::Session;
 use cognate::analysis::work_limit::ProcessClock;
-use cognate::diagnostic::Diagnostic;
+use cognate::diagnostic::{Diagnostic, Error};
 use cognate::model::{Model, SettingsStatement};
 use cognate::results::format::{Format, Sink, Style};
 use cognate::results::output_folder::OutputFolder;
@@ -24,10 +26,9 @@ pub const MOST_IN_RES: usize = 10_000_000;
 /// The wishes of a user about files.
 #[derive(clap::Args, Clone)]
 pub struct FileArgs {
-    /// Formats of the tables: csv, parquet, res, json, req, gra. Without this option it is csv, and
-    /// those that the dataset asks for if they have no more than 10 million numbers: res by
-    /// RESULTS, req by OUTPUT/REQSAVE, gra by OUTPUT/GRSAVE
-    #[arg(long = "format", value_name = "NAME", value_delimiter = ',', value_parser = table_format)]
+    /// Formats of the tables [default: csv, and those that the dataset asks for if they have no
+    /// more than 10 million numbers: res by RESULTS, req by OUTPUT/REQSAVE, gra by OUTPUT/GRSAVE]
+    #[arg(long = "format", value_name = "NAME", value_delimiter = ',', value_parser = table_formats(), ignore_case = true)]
     pub formats: Vec<Format>,
     /// Write a page that shows the run in motion, too (NAME.html)
     #[arg(long)]
@@ -37,6 +38,11 @@ pub struct FileArgs {
     pub open: bool,
     #[command(flatten)]
     style: StyleArgs,
+    #[command(flatten)]
+    writing: WritingArgs,
+    /// Take names in command files as they stand, also where they lead out of the folder of results
+    #[arg(long)]
+    pub trust_paths: bool,
 }
 
 /// The wishes of a user about the look of tables.
@@ -88,14 +94,12 @@ impl FileArgs {
     }
 }
 
-/// Returns the format of a name.
-///
-/// # Errors
-/// The formats that there are.
-fn table_format(name: &str) -> Result<Format, String> {
-    let row = Format::row(&name.to_lowercase()).filter(|row| row.sink.is_some());
-    row.map(|row| row.format)
-        .ok_or_else(|| format!("formats: {}", Format::names(true).join(", ")))
+/// Reads the format of a table by its name.
+pub fn table_formats() -> impl TypedValueParser<Value = Format> {
+    PossibleValuesParser::new(Format::names(true)).try_map(|name| {
+        let row = Format::row(&name.to_lowercase());
+        row.map(|row| row.format).ok_or("there is no such format")
+    })
 }
 
 /// A table of a run that is being written.
@@ -131,18 +135,20 @@ struct Growing {
 
 impl Tables {
     /// Opens the tables of a session in a folder (`None`: this one), and lets it fill them. The
-    /// clock tells since when the run goes on.
+    /// clock tells since when the run goes on; `more`: names of files that come
+    /// when it is over.
     ///
     /// # Errors
-    /// When no file can be made there.
+    /// When no file can be made there, or files of somebody else stand in the way.
     pub fn open(
         args: &FileArgs,
-        dir: Option<&Path>,
+        (dir, more): (Option<&Path>, &[String]),
         session: &mut Session,
         started: ProcessClock,
-    ) -> Result<Self, Diagnostic> {
+    ) -> Result<Self, Error> {
         let base = session.run.name.as_str();
         let folder = OutputFolder::open(dir.unwrap_or(Path::new("")), base)?;
+        let folder = folder.with_leave(args.writing.leave(), args.trust_paths);
         let asked = !args.formats.is_empty();
         let formats = args.chosen(&session.model);
         let mut tables = Vec::new();
@@ -158,6 +164,8 @@ impl Tables {
                 most: if is_limited { MOST_IN_RES } else { usize::MAX },
             });
         }
+        let named = tables.iter().map(|table| table.name.clone());
+        folder.check(&named.chain(more.to_vec()).collect::<Vec<_>>())?;
         let tables = Self(Arc::new(Mutex::new(Growing {
             folder,
             tables,
@@ -238,7 +246,7 @@ impl Tables {
 }
 
 /// Returns the name of a table: that of the record is not free.
-fn table_name(base: &str, format: &str) -> String {
+pub fn table_name(base: &str, format: &str) -> String {
     match format {
         "json" => format!("{base}.table.json"),
         other => format!("{base}.{other}"),
@@ -263,8 +271,7 @@ impl Growing {
             }
             self.flushed = Instant::now();
         }
-        let may_release = !self.is_animated && self.tables.iter().all(|t| t.sink.may_release());
-        if is_full && may_release {
+        if is_full && !self.is_animated {
             self.overview.take(run);
             run.release();
         }
@@ -336,7 +343,7 @@ impl Growing {
             }
         }
         // their places
-        self.folder.put(&files)?;
+        let failed = failed.or(self.folder.put(&files).err());
         let tables = Format::names(true).into_iter();
         let mut mine: Vec<String> = tables.map(|f| table_name(&run.name, f)).collect();
         mine.extend(["msg", "svg", "html"].map(own));
@@ -347,26 +354,22 @@ impl Growing {
                 .filter(|n| n.starts_with(&linear))
                 .cloned(),
         );
-        self.folder.remove_stale(&mine)?;
+        self.folder.put_stale_aside(&mine)?;
         self.folder.keep_claims();
         // the record
         let seconds = &mut run.record.seconds;
         seconds.write = clock.elapsed().as_secs_f64();
         seconds.total = self.started.elapsed().as_secs_f64();
         seconds.processor = self.started.seconds();
-        let record = json::with_files(json::record(run), self.folder.written());
+        let record = json::with_files(json::record(run), &self.folder);
         let record = json::text(&record);
         self.folder.put_record(&record)?;
         for (was, is) in self.folder.kept() {
-            remark(format!(
-                "{} was not written by this program or has been changed: kept as {}",
-                was.display(),
-                is.display()
-            ));
+            remark_on_kept(was, is);
         }
         for table in &self.tables {
             if let Some(part) = self.folder.left_part(&table.name) {
-                let part = part.display();
+                let part = cognate::disk::text(&part);
                 remark(format!(
                     "{part} holds rows of a run that was ended from outside"
                 ));
@@ -374,7 +377,7 @@ impl Growing {
         }
         match failed {
             None => Ok(record),
-            Some(d) => Err(d.help("the table and the other files of the run are written")),
+            Some(d) => Err(d.help("the other files of the run are written")),
         }
     }
 }

@@ -1,14 +1,16 @@
 //! `cognate plot`: columns of results as a picture, in the terminal or as a file.
 
-use super::convert::same_file;
 use super::grouped;
 use super::moved::has_ending;
+use super::recorded;
 use super::recorded::add_measures;
 use super::response::responses;
 use super::setup::{self, Setup};
 use super::table::Table;
-use super::{Exit, Failure, Outcome, remark, render, run, say, width};
+use super::writing::WritingArgs;
+use super::{Exit, Failure, Outcome, piped, remark, render, run, say, width};
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use cognate::report::channels::{Channels, Shown, Source, channels};
 use cognate::report::terminal::{Style, terminal};
 use cognate::report::transform::{Statistics, statistics};
@@ -33,40 +35,45 @@ Examples:
   cognate plot run.csv --statistics")]
 pub struct Args {
     /// Results to read: .csv, .parquet, .json, .res, .req, .gra or .msg; or a model (.adm, .acf),
-    /// whose functions are shown
+    /// whose functions are shown; - reads .csv from standard input, gra:- and so on others
+    #[arg(value_parser = piped::results())]
     input: PathBuf,
-    /// Column to show (repeatable), or a displacement, velocity or acceleration of markers, as
-    /// VX(20,10), or a function of the model; the first few when none is given
+    /// Column to show (repeatable), all of a pattern, as 'slider.*', a displacement, velocity or
+    /// acceleration of markers, as 'VX(slider.cm,10)', or a function of the model [default: the
+    /// first few]
     #[arg(long, value_name = "COLUMN")]
     y: Vec<String>,
     /// Group whose functions are shown (repeatable): of the model, the run by its name, or a set of
-    /// results
+    /// results [default: none]
     #[arg(long = "group", value_name = "GROUP")]
     groups: Vec<String>,
-    /// Last time for functions of a model
+    /// Last time for functions of a model [default: that of MODEL.toml, needed without it]
     #[arg(long, value_name = "TIME")]
     end: Option<f64>,
-    /// Column to show them over; time when not given, of a sweep its first parameter
+    /// Column to show them over [default: time, of a sweep its first parameter]
     #[arg(long, value_name = "COLUMN")]
     x: Option<String>,
-    /// Results of another run, shown over the first (repeatable)
-    #[arg(long, value_name = "FILE")]
+    /// Results of another run, by its name or a file, shown over the first (repeatable) [default:
+    /// none]
+    #[arg(long, value_name = "FILE", value_parser = piped::results())]
     over: Vec<PathBuf>,
     /// Show the values, or what is made of them
     #[arg(long = "as", value_enum, default_value = "values", value_name = "WHAT")]
     shown: ShownName,
-    /// Dataset or command file for motions of markers, where the record does not name it
+    /// Dataset or command file for motions of markers [default: the one that the record names]
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
     /// Draw each unit in a panel of its own
     #[arg(long)]
     panels: bool,
-    /// Title above the picture
+    /// Title above the picture [default: none]
     #[arg(long)]
     title: Option<String>,
-    /// Write a file instead of drawing in the terminal: .svg, .png or .pdf
-    #[arg(long, short, value_name = "FILE", alias = "svg", conflicts_with_all = ["statistics", "list"])]
+    /// Write a file instead of drawing in the terminal: .svg, .png or .pdf [default: the terminal]
+    #[arg(long, short, value_name = "FILE", alias = "svg", conflicts_with_all = ["statistics", "list"], value_parser = piped::output("svg"))]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     /// Print ends, extremes and means of the columns instead
     #[arg(long)]
     statistics: bool,
@@ -161,12 +168,11 @@ pub fn run(args: &Args) -> Outcome {
         }
     }
     let plots = found.arranged(args.panels);
-    let inputs = args.over.iter().chain([&args.input]);
     match &args.out {
-        Some(file) if inputs.into_iter().any(|input| same_file(file, input)) => Err(
-            Failure::usage("the output is the input, which is never overwritten"),
-        ),
-        Some(file) => write(&plots, file),
+        Some(file) => {
+            args.writing.check([file])?;
+            write(&plots, file, args.writing)
+        }
         None => draw_all(plots),
     }
 }
@@ -192,7 +198,7 @@ fn setup_of(args: &Args) -> Result<Option<Setup>, Failure> {
     let model = is_model(&args.input).then(|| setup::of_model(&args.input));
     let setup = model.transpose()?;
     if setup.as_ref().is_some_and(|s| s.functions.is_empty()) {
-        let what = format!("{} has no functions to show", args.input.display());
+        let what = format!("{} has no functions to show", disk::text(&args.input));
         let d = Diagnostic::error("empty_plot", what);
         let advice = "cognate group function makes one; a model has results once it has been run";
         return Err(d.help(advice).into());
@@ -225,18 +231,18 @@ fn runs(args: &Args) -> Result<Vec<Source>, Diagnostic> {
     let files: Vec<&PathBuf> = [&args.input].into_iter().chain(&args.over).collect();
     let stem = |file: &Path| {
         let stem = file.file_stem().unwrap_or_default();
-        stem.to_string_lossy().into_owned()
+        disk::text(&stem)
     };
     let alike = |file: &Path| files.iter().filter(|f| stem(f) == stem(file)).count() > 1;
     (files.iter())
         .map(|file| {
             let folder = file.parent().filter(|_| alike(file));
             let folder = folder
-                .map(|f| format!("{}/", f.display()))
+                .map(|f| format!("{}/", disk::text(&f)))
                 .unwrap_or_default();
             Ok(Source {
+                run: recorded::read(file)?,
                 label: folder + &stem(file),
-                run: results::read(file)?,
             })
         })
         .collect()
@@ -323,9 +329,9 @@ fn statistics_as_json(curve: &Curve, found: Option<Statistics>) -> Value {
 ///
 /// # Errors
 /// When there is nothing to draw, or the file cannot be written.
-fn write(plots: &[Plot], file: &Path) -> Outcome {
-    picture::write(&svg::panels(plots)?, file)?;
-    remark(format!("plot in {}", file.display()));
+fn write(plots: &[Plot], file: &Path, writing: WritingArgs) -> Outcome {
+    writing.bytes(file, &picture::bytes(&svg::panels(plots)?, file)?)?;
+    remark(format!("plot in {}", disk::text(&file)));
     Ok(Exit::Done)
 }
 
@@ -333,8 +339,8 @@ fn write(plots: &[Plot], file: &Path) -> Outcome {
 ///
 /// # Errors
 /// When there is nothing to draw, or the file cannot be written.
-pub fn write_one(plot: &Plot, file: &Path) -> Outcome {
-    write(std::slice::from_ref(plot), file)
+pub fn write_one(plot: &Plot, file: &Path, writing: WritingArgs) -> Outcome {
+    write(std::slice::from_ref(plot), file, writing)
 }
 
 /// Draws plots below each other on standard output; an axis at the right becomes a plot of its own.

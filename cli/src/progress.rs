@@ -1,6 +1,7 @@
 //! The progress of a run that takes longer than two seconds: a bar on standard error when that is a
 //! terminal, otherwise a line now and then.
 
+use cognate::diagnostic::counted;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::cell::Cell;
 use std::io::IsTerminal;
@@ -60,27 +61,47 @@ impl Progress {
     pub fn at(&self, time: f64, steps: usize) {
         self.show(
             time,
-            || format!("time {time:.4}, {steps} steps"),
+            || format!("time {time:.4}, {}", counted(steps, "step")),
             || {
                 let end = self.end;
-                format!("time {time:.6} of {end}, {steps} steps")
+                format!("time {time:.6} of {end}, {}", counted(steps, "step"))
             },
         );
+    }
+    /// Shows that so many of all pictures are drawn.
+    pub fn pictures(&self, done: usize, all: usize) {
+        let text = || format!("{done} of {all} pictures");
+        self.show(done as f64, text, text);
     }
     /// Shows that so many of all runs are done.
     pub fn runs(&self, done: usize, all: usize) {
         let text = || format!("{done} of {all} runs");
         self.show(done as f64, text, text);
     }
+    /// Shows that so much processor time has been used, in s, and by what.
+    pub fn work(&self, used: impl Fn() -> f64, by: &str) {
+        if !self.is_due() {
+            return;
+        }
+        let used = used();
+        let text = || {
+            format!(
+                "{by}, {used:.1} s of at most {:.0} s of processor time",
+                self.end
+            )
+        };
+        self.show(used, text, text);
+    }
+    /// Returns whether it is time to show something.
+    fn is_due(&self) -> bool {
+        !matches!(self.shown, Shown::Nowhere) && self.begun.elapsed() >= self.next.get()
+    }
     /// Shows a part of the whole, where it is time for that.
     fn show(&self, at: f64, in_bar: impl Fn() -> String, in_line: impl Fn() -> String) {
-        if matches!(self.shown, Shown::Nowhere) {
+        if !self.is_due() {
             return;
         }
         let elapsed = self.begun.elapsed();
-        if elapsed < self.next.get() {
-            return;
-        }
         let part = ((at - self.start) / (self.end - self.start)).clamp(0.0, 1.0);
         match &self.shown {
             Shown::Nowhere => {}

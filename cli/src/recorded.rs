@@ -2,12 +2,15 @@
 //! markers are fixed otherwise now.
 
 use super::setup::Asked;
-use super::{Failure, run};
+use super::{Failure, complain_in_files, run};
 use cognate::analysis::motion::{MarkerMeasure, Recorded, marker_digest};
 use cognate::dataset::command::Command;
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
+use cognate::expr::ast::{Callee, Dialect};
+use cognate::expr::{Profile, Symbol, symbol};
 use cognate::model::Model;
-use cognate::results::Run;
+use cognate::results::{self, Run, kept};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -24,7 +27,7 @@ pub(super) fn model_of(results: &Path, given: Option<&Path>) -> Result<Model, Fa
     if expected.is_some_and(|digest| digest != marker_digest(&model)) {
         let what = format!(
             "the markers of {} are not those of the run: it has been changed since, or is another model",
-            file.display()
+            disk::text(&file)
         );
         let d = Diagnostic::error("other_model", what);
         return Err(d.help("--model FILE names the model of the run").into());
@@ -46,7 +49,7 @@ pub(super) fn model_file(results: &Path, given: Option<&Path>) -> Result<PathBuf
         (None, None) => namesake(results).ok_or_else(|| {
             let what = format!(
                 "{} has no record that names its model, nor a dataset of its name beside it",
-                results.display()
+                disk::text(&results)
             );
             let d = Diagnostic::error("no_model", what);
             d.help("--model FILE names it").into()
@@ -58,6 +61,46 @@ pub(super) fn model_file(results: &Path, given: Option<&Path>) -> Result<PathBuf
 fn namesake(results: &Path) -> Option<PathBuf> {
     let dataset = results.with_extension("adm");
     dataset.is_file().then_some(dataset)
+}
+
+/// Reads results, by their file or the name of their run; what is doubted about their file is said.
+///
+/// # Errors
+/// As [`results_file`] and [`results::read`].
+pub(super) fn read(file: &Path) -> Result<Run, Diagnostic> {
+    let run = results::read(&results_file(file)?)?;
+    complain_in_files(&run.record.doubts);
+    Ok(run)
+}
+
+/// Returns the file of results that an argument names: the file itself, or of a run that it names,
+/// as `results/crank`, the one that has most.
+///
+/// # Errors
+/// When there is neither, with runs that are named nearly so.
+fn results_file(named: &Path) -> Result<PathBuf, Diagnostic> {
+    if named.is_file() {
+        return Ok(named.to_owned());
+    }
+    let run = match kept::find(named) {
+        Ok(run) => run,
+        // a file with an ending is told as one that cannot be opened
+        Err(_) if named.extension().is_some() => return Ok(named.to_owned()),
+        Err(d) => return Err(d),
+    };
+    let files = run.files();
+    let of_ending = |ending: &&str| {
+        let name = format!("{}.{ending}", run.name);
+        let is_it = |path: &Path| path.file_name().is_some_and(|n| *n == *name);
+        let mut files = files.iter().filter(|f| f.bytes.is_some());
+        files.find(|f| is_it(&f.path)).map(|f| f.path.clone())
+    };
+    let endings = ["parquet", "res", "csv", "gra", "req"];
+    endings.iter().find_map(of_ending).ok_or_else(|| {
+        let what = format!("the run {} has no table that can be read", run.place());
+        let d = Diagnostic::error("unknown_run", what);
+        d.help("`cognate run --format res` writes one")
+    })
 }
 
 /// Reads the record beside results.
@@ -107,15 +150,26 @@ pub(super) fn add_measures(
     given: Option<&Path>,
     names: &[&str],
 ) -> Result<(), Failure> {
+    let is_call = |name: &str| {
+        let word = name.split_once('(').map(|(word, _)| word.trim());
+        let meaning = word.and_then(|w| symbol(w, Dialect::Function, Profile::Adams));
+        matches!(meaning, Some(Symbol::Callee(Callee::Measure(_))))
+    };
     let absent = names.iter().filter(|name| results.find(name).is_none());
-    let asked = absent.filter_map(|name| Some((*name, MarkerMeasure::of(name)?)));
-    let asked: Vec<(&str, MarkerMeasure)> = asked.collect();
+    let asked: Vec<&str> = absent.copied().filter(|name| is_call(name)).collect();
     // without a model these are names like any other
     let has_model = given.is_some() || record_of(file).is_some() || namesake(file).is_some();
     if asked.is_empty() || !has_model {
         return Ok(());
     }
     let model = model_of(file, given)?;
+    let mut measures = Vec::new();
+    for name in asked {
+        let measure = MarkerMeasure::of(&model, name);
+        let measure = measure.map_err(|wrong| Failure::at_arguments("--y", name, wrong))?;
+        measures.extend(measure.map(|measure| (name, measure)));
+    }
+    let asked = measures;
     let recorded = Recorded::new(results, &model);
     let columns = asked
         .iter()

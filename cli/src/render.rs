@@ -1,9 +1,11 @@
 //! Diagnostics as text for people: the source line, a caret below the place, and advice.
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use anstream::{AutoStream, ColorChoice};
 use cognate::dataset::syntax::Source;
 use cognate::diagnostic::{Cause, Diagnostic, Severity, Subject};
-use std::io::IsTerminal;
+use cognate::disk;
+use std::io;
 
 /// The texts that places refer to, by the name of their file; the name is empty for a text without
 /// a file.
@@ -24,7 +26,7 @@ impl Sources {
         let mut sources = Self::default();
         for file in diagnostics.iter().filter_map(|d| d.file.as_deref()) {
             if sources.text(Some(file)).is_none()
-                && let Ok(bytes) = std::fs::read(file)
+                && let Ok(bytes) = disk::read(disk::path(file))
             {
                 sources.add(file, Source::from_bytes(None, &bytes).text);
             }
@@ -246,18 +248,25 @@ fn floor_boundary(text: &str, mut at: usize) -> usize {
     at
 }
 
-/// Returns whether standard error gets colours: it is a terminal, and NO_COLOR is not set.
+/// Lets the choice of a user rule over what the streams and the environment say.
+pub fn choose_colours(choice: clap::ColorChoice) {
+    let choice = match choice {
+        clap::ColorChoice::Auto => ColorChoice::Auto,
+        clap::ColorChoice::Always => ColorChoice::Always,
+        clap::ColorChoice::Never => ColorChoice::Never,
+    };
+    choice.write_global();
+}
+
+/// Returns whether standard error gets colours: as the user chose, else where it is a terminal and
+/// NO_COLOR is not set.
 pub fn colour_on_stderr() -> bool {
-    std::io::stderr().is_terminal() && colours_allowed()
+    AutoStream::choice(&io::stderr()) != ColorChoice::Never
 }
 
 /// Returns whether standard output gets colours.
 pub fn colour_on_stdout() -> bool {
-    std::io::stdout().is_terminal() && colours_allowed()
-}
-
-fn colours_allowed() -> bool {
-    std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+    AutoStream::choice(&io::stdout()) != ColorChoice::Never
 }
 
 #[cfg(test)]

@@ -1,11 +1,15 @@
 //! `cognate report`: a model at many requests by all methods, as error against time.
 
-use super::arguments::{SpanArgs, UnsolvedArgs};
+use super::arguments::{SpanArgs, UnsolvedArgs, methods};
+use super::progress::Progress;
 use super::run::{self, Single};
-use super::{Exit, Failure, Outcome, interrupt, limit, remark, say};
+use super::writing::{WritingArgs, remark_on_kept};
+use super::{Exit, Failure, Outcome, interrupt, limit, piped, remark, say};
 use cognate::analysis::session::Options;
 use cognate::analysis::watch::Watch;
-use cognate::analysis::work_precision::{Question, Study, page, survey};
+use cognate::analysis::work_limit::ProcessorClock;
+use cognate::analysis::work_precision::{Follow, Question, Study, page, survey};
+use cognate::disk;
 use cognate::model::{Model, RequestKind};
 use cognate::results::json;
 use cognate::results::output_folder::OutputFolder;
@@ -20,30 +24,35 @@ Examples:
   cognate report crank.acf --want 1e-4 --budget 2min
   cognate report crank.adm --end 2 --method RADAU5 --method BDF --out results")]
 pub struct Args {
-    /// Command file (.acf), log of an earlier run (.msg), or dataset (.adm)
+    /// Command file (.acf), log of an earlier run (.msg), or dataset (.adm); - reads a dataset from
+    /// standard input
+    #[arg(value_parser = piped::model())]
     model: PathBuf,
     /// Dataset that the commands are for, where it is not the one that they name
     dataset: Option<PathBuf>,
-    /// Error for which a method and a request are recommended (repeatable)
+    /// Error for which a method and a request are recommended (repeatable) [default: 1e-2, 1e-4,
+    /// 1e-6, 1e-8]
     #[arg(long, value_name = "E")]
     want: Vec<f64>,
     /// Processor time for all runs together: those that would not fit are left out
     #[arg(long, value_name = "TIME", value_parser = limit::seconds, default_value = "1min")]
     budget: f64,
-    /// A method to try (repeatable); all that fit when none is given
-    #[arg(long = "method", value_name = "NAME")]
+    /// A method to try (repeatable) [default: all that fit]
+    #[arg(long = "method", value_name = "NAME", value_parser = methods(), ignore_case = true)]
     methods: Vec<String>,
-    /// A requested error (repeatable); 1e-2 to 1e-12 when none is given
+    /// A requested error (repeatable) [default: 1e-2 to 1e-12]
     #[arg(long = "error", value_name = "E")]
     requests: Vec<f64>,
-    /// A further channel to compare: any expression (repeatable)
+    /// A further channel to compare: any expression (repeatable) [default: none]
     #[arg(long = "column", value_name = "EXPR")]
     columns: Vec<String>,
     #[command(flatten)]
     span: SpanArgs,
-    /// Folder that the report is written to
-    #[arg(short = 'o', long, value_name = "DIR")]
+    /// Folder that the report is written to [default: here]
+    #[arg(short = 'o', long, value_name = "DIR", value_parser = piped::refused(piped::SEVERAL))]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     #[command(flatten)]
     unsolved: UnsolvedArgs,
     /// Print the report as JSON
@@ -56,12 +65,27 @@ const WANTED: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 /// Parts whose places are compared where a model asks for no channel, at most.
 const MOST_PARTS: usize = 100;
 
-/// Listens for Ctrl-C, after which the study ends with what it has.
-struct Terminal;
+/// Shows progress, and listens for Ctrl-C, after which the study ends with what it has.
+struct Terminal {
+    progress: Progress,
+    /// the run that goes on
+    run: String,
+    /// its clock, and the processor time of the runs before, in s
+    clock: (ProcessorClock, f64),
+}
 
 impl Watch for Terminal {
     fn interrupted(&mut self) -> bool {
+        let (clock, before) = &self.clock;
+        self.progress.work(|| before + clock.seconds(), &self.run);
         interrupt::requested()
+    }
+}
+
+impl Follow for Terminal {
+    fn begins(&mut self, (method, request): (&str, f64), spent: f64) {
+        self.run = format!("{method} at {request:.0e}");
+        self.clock = (ProcessorClock::start(), spent);
     }
 }
 
@@ -86,35 +110,45 @@ pub fn run(args: &Args) -> Outcome {
     let (model, dataset) = (job.reading.model, job.reading.dataset);
     let name = format!("{}_report", job.base);
     let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("."));
-    let folder = OutputFolder::open(&dir, &name)?;
+    let folder = OutputFolder::open(&dir, &name)?.with_leave(args.writing.leave(), false);
+    let names = ["csv", "html"].map(|ending| format!("{name}.{ending}"));
+    folder.check(&names)?;
     let parent = args.model.parent().map(Path::to_path_buf);
+    let wanted = match args.want.is_empty() {
+        true => WANTED.to_vec(),
+        false => args.want.clone(),
+    };
     let question = Question {
         name: job.base,
         options: args.unsolved.given_to(Options {
             columns: columns(args, &model),
+            named_only: true,
             ..Options::default()
         }),
         model: &model,
         steps: &job.steps,
         folders: args.out.clone().into_iter().chain(parent).collect(),
         requests: requests(args)?,
+        wanted: wanted.clone(),
         methods: args.methods.iter().map(|m| m.to_uppercase()).collect(),
         budget: args.budget,
         trusted: None,
     };
-    let study = survey(&question, &mut Terminal).map_err(|e| Failure::in_model(&dataset, e))?;
-    let wanted = if args.want.is_empty() {
-        WANTED.to_vec()
-    } else {
-        args.want.clone()
+    let mut terminal = Terminal {
+        progress: Progress::new(false, 0.0, args.budget),
+        run: String::new(),
+        clock: (ProcessorClock::start(), 0.0),
     };
+    let study = survey(&question, &mut terminal);
+    terminal.progress.done();
+    let study = study.map_err(|e| Failure::in_model(&dataset, e))?;
     let files = write(folder, &name, &study, &wanted, read)?;
     if args.json {
         say(&json::text(&study.json(&wanted)));
     } else {
         say(&study.text(&wanted));
         for file in files {
-            remark(file.display());
+            remark(disk::text(&file));
         }
     }
     Ok(if study.interrupted {
@@ -179,14 +213,10 @@ fn write(
     folder.put(&files)?;
     let mut record = study.json(wanted);
     record["read_seconds"] = read.into();
-    let record = json::with_files(record, folder.written());
+    let record = json::with_files(record, &folder);
     folder.put_record(&json::text(&record))?;
     for (was, is) in folder.kept() {
-        remark(format!(
-            "{} was not written by this program or has been changed: kept as {}",
-            was.display(),
-            is.display()
-        ));
+        remark_on_kept(was, is);
     }
     Ok(folder.files().to_vec())
 }

@@ -6,15 +6,16 @@ use super::limit::{Guard, simulations_to_the_end};
 use super::progress::Progress;
 use super::render::Sources;
 use super::setup::{self, Asked, Prepared, Setup};
-use super::{Exit, Failure, Outcome, interrupt, output, remark, say, summary};
+use super::{Exit, Failure, Outcome, interrupt, linear, output, piped, remark, say, summary};
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::state::{self, Saved};
-use cognate::analysis::session::{Chosen, Options, Session};
+use cognate::analysis::session::{Chosen, Options, Session, check_column};
 use cognate::analysis::watch::Watch;
 use cognate::analysis::work_limit::ProcessClock;
 use cognate::dataset::command::{Command, Script, SimulationKind, Step};
 use cognate::dataset::{self, Dataset, Reading};
 use cognate::diagnostic::{Cause, Diagnostic, Error, Severity};
+use cognate::disk;
 use cognate::model::{ElementKind, Family, Model, SettingsStatement};
 use cognate::numeric::Stats;
 use cognate::results::format::Format;
@@ -38,25 +39,27 @@ Examples:
   cognate run pendulum.acf --error 1e-8 --method DOP853 --out results --json")]
 pub struct Args {
     /// Command file (.acf), log of an earlier run whose commands are obeyed again (.msg), or
-    /// dataset (.adm)
+    /// dataset (.adm); - reads a dataset from standard input
+    #[arg(value_parser = piped::model())]
     model: PathBuf,
     /// Dataset that the commands are for, where it is not the one that they name
     dataset: Option<PathBuf>,
     #[command(flatten)]
     integration: IntegrationArgs,
-    /// A further column of the table: any expression (repeatable)
+    /// A further column of the table: any expression (repeatable) [default: none]
     #[arg(long = "column", value_name = "EXPR")]
     columns: Vec<String>,
     #[command(flatten)]
     span: SpanArgs,
     /// Load cases and loads that act, as SFORCE/3 or gravity; `all` for all loads. The choice is
-    /// kept in MODEL.toml for the next runs
+    /// kept in MODEL.toml for the next runs [default: those of the last choice, else all]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     loads: Vec<String>,
-    /// Folder that results are written to
-    #[arg(short = 'o', long, value_name = "DIR")]
+    /// Folder that results are written to, or - for the table alone on standard output, as .csv or
+    /// by json:- and so on [default: here]
+    #[arg(short = 'o', long, value_name = "DIR", value_parser = piped::run_folder())]
     out: Option<PathBuf>,
-    /// Name of the run, which its files begin with; without it the model's or OUTPUT_PREFIX
+    /// Name of the run, which its files begin with [default: OUTPUT_PREFIX, else the model's]
     #[arg(long, value_name = "NAME", value_parser = run_name)]
     name: Option<String>,
     /// Solve N times and report the median time
@@ -66,14 +69,14 @@ pub struct Args {
     unsolved: UnsolvedArgs,
     #[command(flatten)]
     limits: LimitArgs,
-    /// Threads for mechanisms that nothing couples, which change no result; without it as many as
-    /// there are processors
+    /// Threads for mechanisms that nothing couples, which change no result [default: as many as
+    /// there are processors]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
     #[command(flatten)]
     output: output::FileArgs,
     /// Record only this element, as JOINT/3 or by its name, or this kind, as JOINT (repeatable);
-    /// tables show it
+    /// tables show it [default: all]
     #[arg(long, value_name = "ELEMENT", value_delimiter = ',')]
     only: Vec<Chosen>,
     /// Record velocities and accelerations of the bodies' centres of mass, eight each; tables show
@@ -147,7 +150,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     // read
     let is_command = has_commands(&args.model);
     let job = job(args, is_command)?;
-    let args = &args.completed(&job.setup);
+    let args = &args.completed(&job.setup)?;
     let [read, about_mechanism] = doubted::remark_on(&job, args.quiet);
     if !args.quiet {
         remark_on_loads(&job);
@@ -162,8 +165,8 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     session.run.record.loads = job.loads;
     let doubts: Vec<_> = read.iter().chain(&about_mechanism).cloned().collect();
     note_doubts(&mut session, &doubts);
-    let folder = args.out.as_deref();
-    let tables = output::Tables::open(&args.output, folder, &mut session, clock)?;
+    let shown = !args.json && !args.quiet;
+    let tables = tables_of(args, &mut session, &steps, clock)?;
     guard.follow(&session, &tables);
 
     // solve
@@ -175,27 +178,29 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
 
     // write and report
     guard.done();
-    let shown = !args.json && !args.quiet;
+    let is_piped = args.out.as_deref().is_some_and(piped::is_output);
     let is_nothing = failure.is_some() || status == Status::Interrupted;
     let is_refused = is_nothing && session.run.rows() == 0;
     let (written, record) = if is_refused {
         // what an earlier run has written stays
         (Vec::new(), json::text(&json::record(&session.run)))
     } else {
-        tables.complete(&mut session, shown)?
+        tables.complete(&mut session, shown && !is_piped)?
     };
     if args.output.open {
         open_pages(&written);
     }
     if args.json {
         say(&record);
+    } else if shown && is_piped {
+        remark(summary::facts(&session.run, &[]).trim_end());
     } else if shown && !is_refused {
         say(&tables.overview(&session.run));
         remark(summary::facts(&session.run, &written).trim_end());
     }
     if let Some(mut diagnostics) = failure {
         // a place without a file belongs to the commands
-        let commands = args.model.display().to_string();
+        let commands = disk::text(&args.model);
         for d in diagnostics
             .iter_mut()
             .filter(|d| is_command && d.file.is_none() && d.line > 0)
@@ -217,6 +222,25 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     Ok(exit(status))
 }
 
+/// Opens the tables of a run, where all of its files may be written.
+fn tables_of(
+    args: &Args,
+    session: &mut Session,
+    steps: &[Step],
+    clock: ProcessClock,
+) -> Result<output::Tables, Error> {
+    let name = session.run.name.clone();
+    let endings = [
+        Some("msg"),
+        (!args.json && !args.quiet).then_some("svg"),
+        args.output.animate.then_some("html"),
+    ];
+    let own = endings.into_iter().flatten();
+    let mut more = linear::named_by(&name, steps);
+    more.extend(own.map(|ending| format!("{name}.{ending}")));
+    output::Tables::open(&args.output, (args.out.as_deref(), &more), session, clock)
+}
+
 /// Opens the pages among files that were written.
 fn open_pages(written: &[PathBuf]) {
     let is_page = |file: &&PathBuf| super::moved::has_ending(file, "html");
@@ -231,7 +255,8 @@ fn job(args: &Args, is_command: bool) -> Result<Job, Failure> {
     };
     if is_command {
         args.span.refuse_beside(&args.model)?;
-        return script_with(&args.model, args.dataset.as_deref(), asked);
+        let (dataset, trusting) = (args.dataset.as_deref(), args.output.trust_paths);
+        return script_from(&args.model, dataset, asked, trusting);
     }
     let single = Single {
         model: &args.model,
@@ -243,7 +268,10 @@ fn job(args: &Args, is_command: bool) -> Result<Job, Failure> {
 
 impl Args {
     /// Returns these arguments, with those of a set-up where they are not given.
-    fn completed(&self, setup: &Setup) -> Self {
+    ///
+    /// # Errors
+    /// More than one thing goes to standard output.
+    fn completed(&self, setup: &Setup) -> Result<Self, Failure> {
         let mut all = self.clone();
         let solve = &setup.solve;
         let IntegrationArgs { error, method } = &mut all.integration;
@@ -259,7 +287,14 @@ impl Args {
         if all.output.formats.is_empty() {
             all.output.formats.clone_from(&solve.formats);
         }
-        all
+        if let Some(format) = piped::run_format(self.out.as_deref(), &all.output.formats)? {
+            if self.json || self.output.animate {
+                let what = "standard output takes the table alone: -o DIR beside --json, --animate";
+                return Err(Failure::usage(what));
+            }
+            all.output.formats = vec![format];
+        }
+        Ok(all)
     }
 }
 
@@ -329,7 +364,7 @@ fn check_columns(args: &Args, model: &Model, steps: &[Step]) -> Result<(), Failu
             1 => "--column".to_owned(),
             _ => format!("--column {}", k + 1),
         };
-        for mut d in model.check_expression(text) {
+        for mut d in check_column(model, text) {
             if is_final || !d.is(Cause::UnknownElement) {
                 d.file = Some(place.clone());
                 failure.diagnostics.push(d);
@@ -377,7 +412,7 @@ fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session 
         session.was_read();
     }
     session.end_with_commands();
-    session.run.record.model = args.model.display().to_string();
+    session.run.record.model = disk::text(&args.model);
     let folder = args.model.parent().map(Path::to_path_buf);
     session.folders = args.out.clone().into_iter().chain(folder).collect();
     let title = Event::Title(session.run.title.clone());
@@ -527,8 +562,7 @@ fn single_simulation(args: &Single<'_>, setup: &Setup) -> Option<Vec<Step>> {
 }
 
 pub(super) fn stem(path: &Path) -> String {
-    path.file_stem()
-        .map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
+    path.file_stem().map_or_else(|| "run".into(), disk::text)
 }
 
 /// Reads a dataset, with the loads of the last choice.
@@ -590,12 +624,28 @@ pub(super) fn script_with(
     dataset: Option<&Path>,
     asked: Asked<'_>,
 ) -> Result<Job, Failure> {
+    script_from(path, dataset, asked, false)
+}
+
+/// Does the same; `trusting`: names of results may lead out of their folder.
+///
+/// # Errors
+/// As [`script`].
+fn script_from(
+    path: &Path,
+    dataset: Option<&Path>,
+    asked: Asked<'_>,
+    trusting: bool,
+) -> Result<Job, Failure> {
     let failed = |e: Error| Failure::in_files(Exit::Input, e.into());
     if path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("msg"))
     {
-        let script = Script::from_message_log(path).map_err(failed)?;
+        let mut script = Script::from_message_log(path).map_err(failed)?;
+        if !trusting {
+            script.keep_inside();
+        }
         let file = (dataset.map(Path::to_path_buf))
             .or_else(|| script.model_file())
             .unwrap_or_else(|| path.with_extension("adm"));
@@ -610,7 +660,10 @@ pub(super) fn script_with(
             read_seconds,
         });
     }
-    let script = Script::read(path).map_err(failed)?;
+    let mut script = Script::read(path).map_err(failed)?;
+    if !trusting {
+        script.keep_inside();
+    }
     let file = dataset.map(Path::to_path_buf);
     let Some(file) = file.or_else(|| script.model_file()) else {
         if let Some(Step {
@@ -621,8 +674,8 @@ pub(super) fn script_with(
             // a state file holds its model
             let folder = path.parent().unwrap_or(Path::new(""));
             let file = folder.join(state::file_name(name));
-            let bytes = std::fs::read(&file).map_err(|e| {
-                let what = format!("{}: cannot be opened: {e}", file.display());
+            let bytes = disk::read(&file).map_err(|e| {
+                let what = format!("{}: cannot be opened: {e}", disk::text(&file));
                 Diagnostic::error("cannot_open", what)
             })?;
             let saved = Saved::read(&bytes).map_err(Error::into_first)?;
@@ -636,8 +689,7 @@ pub(super) fn script_with(
                 read_seconds: 0.0,
             });
         }
-        let d = Diagnostic::error("no_model", format!("{} names no dataset", path.display()));
-        return Err(d.help("begin it with FILE/MODEL=name").into());
+        return Err(names_no_dataset(path).into());
     };
     let base = script.output.clone().unwrap_or_else(|| stem(path));
     if !file.exists() {
@@ -655,15 +707,22 @@ pub(super) fn script_with(
     })
 }
 
+/// Returns the mistake of commands that name no dataset, where none is given beside them.
+pub(super) fn names_no_dataset(path: &Path) -> Diagnostic {
+    let what = format!("{} names no dataset", path.display());
+    Diagnostic::error("no_model", what)
+        .help("begin it with FILE/MODEL=name, or give the dataset behind the command file")
+}
+
 /// Creates the failure for a missing dataset of a command file: names the line, and the files that
 /// may be meant.
 fn missing(script: &Script, path: &Path, file: &Path) -> Failure {
     let name = script.model.as_deref().unwrap_or_default();
     let mut d = Diagnostic::error(
         "cannot_open",
-        format!("there is no dataset {}", file.display()),
+        format!("there is no dataset {}", disk::text(&file)),
     );
-    d.file = Some(path.display().to_string());
+    d.file = Some(disk::text(&path));
     if !script.answered {
         return Failure::in_files(Exit::Input, vec![d]);
     }

@@ -2,6 +2,8 @@
 //! a picture of the results.
 
 use super::table::Table;
+use cognate::diagnostic::counted;
+use cognate::disk;
 use cognate::report::{Plot, svg::panels};
 use cognate::results::{Accuracy, Kind, Run, Seconds, Warning, digits_of_six};
 use std::collections::BTreeMap;
@@ -57,13 +59,13 @@ pub fn table(run: &Run, n_rows: usize, width: usize, who_has_all: &str) -> Strin
     let hidden = cells.len() - n;
     let mut left_out = Vec::new();
     if shown.len() < n_rows {
-        left_out.push(format!("{} of {n_rows} rows", shown.len()));
+        left_out.push(format!("{} of {}", shown.len(), counted(n_rows, "row")));
     }
     if hidden > 0 {
         left_out.push(format!(
-            "{} of {} columns",
+            "{} of {}",
             columns.len() - hidden,
-            columns.len()
+            counted(columns.len(), "column")
         ));
     }
     let mut text = table.first(n);
@@ -181,10 +183,10 @@ fn bar(x: f64) -> String {
 pub fn facts(run: &Run, written: &[PathBuf]) -> String {
     let r = &run.record;
     let mut text = format!(
-        "{}: {} rows, {} steps",
+        "{}: {}, {}",
         r.status.word(),
-        run.table_rows().count(),
-        r.counts.steps
+        counted(run.table_rows().count(), "row"),
+        counted(r.counts.steps, "step")
     );
     if !r.method.is_empty() {
         text += &format!(" of {}", r.method);
@@ -210,7 +212,7 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
         text += "the model has no REQUEST: --column EXPR adds a column to the table\n";
     }
     for file in written {
-        text += &format!("{}\n", file.display());
+        text += &format!("{}\n", disk::text(&file));
     }
     text
 }
@@ -228,7 +230,8 @@ fn redundancy(redundant: &[String]) -> String {
     let what = match redundant.len() {
         1 => format!("{first} follows from other equations and is left out"),
         n => format!(
-            "{n} equations follow from others and are left out ({}{more})",
+            "{} follow from others and are left out ({}{more})",
+            counted(n, "equation"),
             named.join(", ")
         ),
     };

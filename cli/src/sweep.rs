@@ -2,14 +2,17 @@
 
 use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, threads};
 use super::progress::Progress;
+use super::recorded;
 use super::render::Sources;
 use super::run::{self, Single};
 use super::table::Table as Text;
-use super::{Exit, Failure, Outcome, interrupt, remark, say, width};
+use super::writing::WritingArgs;
+use super::{Exit, Failure, Outcome, interrupt, piped, remark, say, width};
 use cognate::analysis::session::Options;
 use cognate::analysis::sweep::design::{self, Values};
 use cognate::analysis::sweep::{Follow, Row, Sweep, Table};
-use cognate::diagnostic::{Diagnostic, Error};
+use cognate::diagnostic::{Diagnostic, Error, counted};
+use cognate::disk;
 use cognate::results::format::Style;
 use cognate::results::{self, Status, digits_of_six};
 use std::path::{Path, PathBuf};
@@ -33,31 +36,36 @@ A parameter is an argument of a statement (PART/2.MASS), a number of a list (MAR
 becomes a number (VARIABLE/3). Measures are max, min, mean, rms, first, last, time_of_max and time_of_min of an
 expression or of a column of the results, at the outputs.")]
 pub struct Args {
-    /// Command file (.acf), which every run obeys, or dataset (.adm)
+    /// Command file (.acf), which every run obeys, or dataset (.adm); - reads a dataset from
+    /// standard input
+    #[arg(value_parser = piped::model())]
     model: PathBuf,
     /// Parameter and its values: A:B:N is N values from A to B, or a list with commas (repeatable)
+    /// [default: none, unless a table is the design]
     #[arg(long, value_name = "NAME=VALUES")]
     set: Vec<String>,
-    /// Number of each run, as max(DX(12,21)) (repeatable)
+    /// Number of each run, as max(DX(12,21)) (repeatable) [default: none, at least one is needed]
     #[arg(long, value_name = "MEASURE")]
     measure: Vec<String>,
     /// grid: all combinations; latin: a latin hypercube of --runs points; or a table (.csv) with a
     /// column a parameter
     #[arg(long, value_name = "DESIGN", default_value = "grid")]
     design: String,
-    /// Runs of a latin hypercube
+    /// Runs of a latin hypercube [default: none, it needs them]
     #[arg(long, value_name = "N")]
     runs: Option<usize>,
     /// Seed of a latin hypercube: the same seed gives the same points
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
-    /// Threads; as many as there are cores when not given
+    /// Threads [default: as many as there are processors]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// Table to write or to go on with: .csv, or .parquet beside its .csv; MODEL_sweep.csv when not
-    /// given
-    #[arg(long, short, value_name = "FILE")]
+    /// Table to write or to go on with: .csv, or .parquet beside its .csv [default:
+    /// MODEL_sweep.csv]
+    #[arg(long, short, value_name = "FILE", value_parser = piped::refused(piped::GROWS))]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     #[command(flatten)]
     span: SpanArgs,
     #[command(flatten)]
@@ -90,12 +98,18 @@ pub fn run(args: &Args) -> Outcome {
     let (out, format) = table_path(args)?;
     let (mut sweep, base) = open(args)?;
     let points = prepare(args, &mut sweep)?;
-    let out = out.unwrap_or_else(|| PathBuf::from(format!("{base}_sweep.csv")));
-    let mut table = Table::open(&out, &sweep, &points)?;
+    let out = out.unwrap_or_else(|| disk::path(format!("{base}_sweep.csv")));
+    if let Some(file) = &format {
+        args.writing.check([file])?;
+    }
+    let mut table = Table::open_with(&out, &sweep, &points, args.writing.leave())?;
     let missing = table.missing();
     if !args.quiet && table.n_found() > 0 {
-        let (found, all, out) = (table.n_found(), points.len(), out.display());
-        remark(format!("{found} of {all} runs are in {out} already"));
+        let (found, all, out) = (table.n_found(), points.len(), disk::text(&out));
+        remark(format!(
+            "{out} has {found} of {} already",
+            counted(all, "run")
+        ));
     }
     interrupt::results_begin();
 
@@ -111,9 +125,10 @@ pub fn run(args: &Args) -> Outcome {
     progress.done();
     outcome?;
     if interrupt::requested() && done < points.len() {
-        let (all, out) = (points.len(), out.display());
+        let (all, out) = (points.len(), disk::text(&out));
         remark(format!(
-            "interrupted: {done} of {all} runs are in {out}; the same command goes on"
+            "interrupted: {out} has {done} of {}; the same command goes on",
+            counted(all, "run")
         ));
         return Ok(Exit::Interrupted);
     }
@@ -121,13 +136,17 @@ pub fn run(args: &Args) -> Outcome {
     // write and report
     table.complete()?;
     if let Some(file) = &format {
-        results::write(&table.numbers(), file, Style::default())?;
+        (args.writing).run(&table.numbers(), file, Style::default())?;
     }
     if !args.quiet {
         say(&overview(&sweep, table.rows()));
         let files = [&out].into_iter().chain(&format);
-        let files: Vec<String> = files.map(|file| file.display().to_string()).collect();
-        remark(format!("{} runs in {}", points.len(), files.join(", ")));
+        let files: Vec<String> = files.map(|file| disk::text(&file)).collect();
+        remark(format!(
+            "{} in {}",
+            counted(points.len(), "run"),
+            files.join(", ")
+        ));
     }
     Ok(told(args, table.rows()))
 }
@@ -146,7 +165,7 @@ fn table_path(args: &Args) -> Result<(Option<PathBuf>, Option<PathBuf>), Failure
     }
     Err(Failure::usage(format!(
         "--out {}: the table of a sweep is .csv or .parquet",
-        out.display()
+        disk::text(&out)
     )))
 }
 
@@ -297,7 +316,7 @@ fn listed(
         note("--design".into(), file, d.into());
         return None;
     }
-    let run = match results::read(path) {
+    let run = match recorded::read(path) {
         Ok(run) => run,
         Err(d) => {
             note("--design".into(), file, d.into());
@@ -356,14 +375,16 @@ fn told(args: &Args, rows: &[Row]) -> Exit {
     if let Some(first) = failed.clone().next() {
         let (run, reason) = (first.run, &first.reason);
         remark(format!(
-            "{n_failed} of {n} runs failed; run {run}: {reason}"
+            "{n_failed} of {} failed; run {run}: {reason}",
+            counted(n, "run")
         ));
     }
     let warned = rows.iter().filter(|row| row.warnings > 0);
     if let (false, Some(first)) = (args.quiet, warned.clone().next()) {
         let (n_warned, run) = (warned.count(), first.run);
         remark(format!(
-            "{n_warned} of {n} runs have warnings, run {run} first: cognate run tells them for a model with these numbers"
+            "{n_warned} of {} have warnings; to see those of run {run}, put its numbers into the model and use cognate run",
+            counted(n, "run")
         ));
     }
     match failed.into_iter().next() {

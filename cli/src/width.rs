@@ -8,8 +8,8 @@ const LIMITS: (usize, usize) = (40, 240);
 /// Returns the width that is named or that the terminal has; `None` where there is neither.
 fn known() -> Option<usize> {
     let named = std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok());
-    let terminal = || console::Term::stdout().size_checked();
-    named.or_else(|| terminal().map(|(_, columns)| usize::from(columns)))
+    let terminal = || terminal_size::terminal_size_of(std::io::stdout());
+    named.or_else(|| terminal().map(|(terminal_size::Width(n), _)| usize::from(n)))
 }
 
 /// Returns the width for tables, in characters.

@@ -10,7 +10,7 @@ import subprocess
 import timeit
 from pathlib import Path
 
-import cognate as cg
+import pycognate as cg
 import numpy as np
 
 TEXTS = ["SIN(2*PI*TIME)*EXP(-0.3*TIME)+0.5*TIME**2-TIME**3", "STEP5(TIME, 0, 0, 1, 10)*SIN(2*PI*TIME)"]

@@ -2,18 +2,17 @@
 
 use crate::errors::{self, Kind};
 use cognate::ModelBuilder;
-use cognate::build::{Body, Element, End, Frame, Key, Setting};
+use cognate::build::{Element, End, Key, Setting, Word};
+use cognate::dataset::manual::Entry;
 use cognate::model::ElementKind;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A statement of a builder.
-#[pyclass(module = "cognate._core", frozen)]
+#[pyclass(module = "pycognate._core", frozen)]
 pub struct Statement {
     key: Key,
-    /// it is a body, on which ends of joints get markers
-    is_body: bool,
     #[pyo3(get)]
     number: u32,
     /// "PART/2"; of settings the empty text
@@ -46,7 +45,7 @@ impl From<Given> for Setting {
 }
 
 /// A model that a program makes.
-#[pyclass(module = "cognate._core", frozen)]
+#[pyclass(module = "pycognate._core", frozen)]
 pub struct Builder {
     model: Mutex<ModelBuilder>,
 }
@@ -70,7 +69,6 @@ fn handle<K>(element: &Element<'_, K>) -> Statement {
     let (kind, number) = (element.kind(), element.number());
     Statement {
         key: element.key(),
-        is_body: matches!(kind, Some(ElementKind::Part | ElementKind::PointMass)),
         number,
         element: kind.map_or_else(String::new, |kind| kind.id(number).to_string()),
     }
@@ -78,14 +76,52 @@ fn handle<K>(element: &Element<'_, K>) -> Statement {
 
 /// Returns a statement as the end of a joint or force.
 fn end(model: &ModelBuilder, of: &Statement) -> PyResult<End> {
-    let body = |e: Element<'_, Body>| End::from(&e);
-    let frame = |e: Element<'_, Frame>| End::from(&e);
-    let found = if of.is_body {
-        model.body(of.key).map(body)
-    } else {
-        model.frame(of.key).map(frame)
-    };
-    found.ok_or_else(foreign)
+    model.end(of.key).ok_or_else(foreign)
+}
+
+/// Returns the word that adds an element.
+fn word_of(word: &str) -> PyResult<Word> {
+    Word::find(word).map_err(|said| PyValueError::new_err(said.to_string()))
+}
+
+/// An argument of an element: keyword, kind of its value, unit, default, whether it is needed and
+/// may be given several times, a sentence about it.
+type Told = (
+    String,
+    &'static str,
+    &'static str,
+    &'static str,
+    bool,
+    bool,
+    &'static str,
+);
+
+/// The words that add elements: word, keyword of the statement, whether it has two ends, a sentence
+/// about it, its arguments.
+#[pyfunction]
+pub fn words() -> Vec<(String, &'static str, bool, &'static str, Vec<Told>)> {
+    let all = Word::all().into_iter().map(|word| {
+        let arguments = word
+            .arguments()
+            .into_iter()
+            .map(|Entry { argument: a, note }| {
+                let kind = a.kind.name();
+                let (unit, default, meaning) = (note.unit, note.default, note.meaning);
+                (
+                    a.keyword(),
+                    kind,
+                    unit,
+                    default,
+                    a.required,
+                    a.repeated,
+                    meaning,
+                )
+            });
+        let arguments = arguments.collect();
+        let (summary, keyword) = (word.summary(), word.kind.keyword());
+        (word.word, keyword, word.has_ends, summary, arguments)
+    });
+    all.collect()
 }
 
 #[pymethods]
@@ -106,6 +142,24 @@ impl Builder {
     /// Add a statement with a number.
     fn element(&self, keyword: &str, name: &str) -> PyResult<Statement> {
         Ok(handle(&self.model().element(kind_of(keyword)?, name)))
+    }
+
+    /// Add an element by a word of the table.
+    fn add(&self, word: &str, name: &str) -> PyResult<Statement> {
+        Ok(handle(&self.model().add(&word_of(word)?, name)))
+    }
+
+    /// Add an element between two ends by a word of the table.
+    fn add_between(
+        &self,
+        word: &str,
+        name: &str,
+        i: &Statement,
+        j: &Statement,
+    ) -> PyResult<Statement> {
+        let model = self.model();
+        let (i, j) = (end(&model, i)?, end(&model, j)?);
+        Ok(handle(&model.add_between(&word_of(word)?, name, i, j)))
     }
 
     /// Return the statement without a number that has this keyword.

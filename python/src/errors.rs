@@ -1,9 +1,10 @@
-//! Diagnostics as Python exceptions: the classes stand in `cognate/_errors.py`.
+//! Diagnostics as Python exceptions: the classes stand in `pycognate/_errors.py`.
 
 use cognate::Error;
 use cognate::diagnostic::{Diagnostic, Severity};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
+use std::path::Path;
 
 /// The exception that tells about mistakes.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +15,8 @@ pub enum Kind {
     Model,
     /// a file of results that cannot be read or written
     Results,
+    /// a column that a run does not have
+    Column,
 }
 
 impl Kind {
@@ -22,6 +25,7 @@ impl Kind {
             Kind::Expr => "ExprError",
             Kind::Model => "ModelError",
             Kind::Results => "ResultsError",
+            Kind::Column => "ColumnError",
         }
     }
 }
@@ -55,7 +59,7 @@ fn in_keywords(text: &str) -> String {
     text
 }
 
-/// Returns a diagnostic as a `cognate.Diagnostic`.
+/// Returns a diagnostic as a `pycognate.Diagnostic`.
 ///
 /// # Errors
 /// Whatever Python raises when the object is made.
@@ -86,7 +90,7 @@ pub fn diagnostic<'py>(py: Python<'py>, d: &Diagnostic) -> PyResult<Bound<'py, P
     class.call((), Some(&fields))
 }
 
-/// Returns diagnostics as a list of `cognate.Diagnostic`.
+/// Returns diagnostics as a list of `pycognate.Diagnostic`.
 ///
 /// # Errors
 /// Whatever Python raises when the objects are made.
@@ -97,12 +101,30 @@ pub fn diagnostics<'py>(py: Python<'py>, all: &[Diagnostic]) -> PyResult<Bound<'
     PyList::new(py, all)
 }
 
+/// Codes of mistakes that name a file which cannot be read.
+const NO_FILE: [&str; 2] = ["cannot_open", "file_unreadable"];
+
+/// Returns whether the first mistake is a file that is not there.
+fn is_missing(all: &Error) -> bool {
+    let first = all.first();
+    let file = first
+        .file
+        .as_ref()
+        .filter(|_| NO_FILE.contains(&first.code));
+    file.is_some_and(|file| !Path::new(file).exists())
+}
+
 /// Returns the exception for mistakes, all of them in its `errors`; `source`: the text of the
-/// expression that they are in.
+/// expression that they are in. Where a file is not there it is a `FileNotFoundError` as well.
 pub fn exception(py: Python<'_>, kind: Kind, all: impl Into<Error>, source: Option<&str>) -> PyErr {
     let all = all.into();
     let raised = || -> PyResult<PyErr> {
-        let class = module(py)?.getattr(kind.class())?;
+        let class = match (kind, is_missing(&all)) {
+            (Kind::Model, true) => "ModelFileNotFound",
+            (Kind::Results, true) => "ResultsFileNotFound",
+            (kind, _) => kind.class(),
+        };
+        let class = module(py)?.getattr(class)?;
         let value = class.call1((diagnostics(py, all.diagnostics())?, source))?;
         Ok(PyErr::from_value(value))
     };
@@ -110,5 +132,5 @@ pub fn exception(py: Python<'_>, kind: Kind, all: impl Into<Error>, source: Opti
 }
 
 fn module(py: Python<'_>) -> PyResult<Bound<'_, PyModule>> {
-    py.import("cognate._errors")
+    py.import("pycognate._errors")
 }

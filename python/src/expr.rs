@@ -33,7 +33,7 @@ const POINTS_TO_DETACH: usize = 512;
 /// dialect : {"function", "expression"}
 ///     Radians and ``TIME``, or degrees and ``t``.
 /// names : dict, optional
-///     Lists of ``variables``, ``constants`` and ``functions``; ``cognate.expr`` makes it.
+///     Lists of ``variables``, ``constants`` and ``functions``; ``pycognate.expr`` makes it.
 ///
 /// Raises
 /// ------
@@ -49,7 +49,7 @@ const POINTS_TO_DETACH: usize = 512;
 /// >>> f = Expr("SIN(2*PI*TIME)")
 /// >>> f(0.25)
 /// 1.0
-#[pyclass(module = "cognate", frozen)]
+#[pyclass(module = "pycognate", frozen)]
 pub struct Expr {
     shared: SharedEvaluator,
     dialect: Dialect,
@@ -305,7 +305,7 @@ impl Expr {
         slf: &Bound<'py, Self>,
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Restored)> {
-        let maker = py.import("cognate._expr")?.getattr("_restored")?;
+        let maker = py.import("pycognate._expr")?.getattr("_restored")?;
         let this = slf.get();
         Ok((
             maker,

@@ -1,8 +1,8 @@
-//! The compiled half of the Python package `cognate`: expressions, models, sessions, results.
+//! The compiled half of the Python package `pycognate`: expressions, models, sessions, results.
 //!
-//! Everything that costs time happens here, with Python's lock released; `cognate/*.py` dresses it
+//! Everything that costs time happens here, with Python's lock released; `pycognate/*.py` dresses it
 //! for Python. Arrays of results are views of the memory of a [`results::Results`], without a copy.
-//! A mistake of the user becomes one of the exceptions of `cognate/_errors.py`, which hold every
+//! A mistake of the user becomes one of the exceptions of `pycognate/_errors.py`, which hold every
 //! diagnostic.
 //!
 //! ```text
@@ -37,7 +37,7 @@ use pyo3::pymodule;
 #[pymodule]
 mod _core {
     #[pymodule_export]
-    use super::builder::{Builder, Statement};
+    use super::builder::{Builder, Statement, words};
     #[pymodule_export]
     use super::expr::Expr;
     #[pymodule_export]

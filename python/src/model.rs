@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A model as its dataset says.
-#[pyclass(module = "cognate._core", frozen)]
+#[pyclass(module = "pycognate._core", frozen)]
 pub struct Model {
     /// the model, with the changes since it was read
     pub(crate) model: model::Model,

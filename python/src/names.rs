@@ -57,7 +57,12 @@ fn called(
                     let found: Vec<f64> = slopes.call1(py, given.clone())?.extract(py)?;
                     if found.len() != out.len() {
                         let (n, wanted) = (found.len(), out.len());
-                        let what = format!("{n} derivatives for {wanted} arguments");
+                        let counted = cognate::diagnostic::counted::<usize>;
+                        let what = format!(
+                            "{} for {}",
+                            counted(n, "derivative"),
+                            counted(wanted, "argument")
+                        );
                         return Err(PyValueError::new_err(what));
                     }
                     out.copy_from_slice(&found);

@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 use std::path::PathBuf;
 
 /// The results of a run, which no longer change.
-#[pyclass(module = "cognate._core", frozen)]
+#[pyclass(module = "pycognate._core", frozen)]
 pub struct Results {
     run: Run,
     /// the record as JSON
@@ -298,6 +298,22 @@ impl Results {
         self.run.find(name)
     }
 
+    /// Find the index of a column; raise ColumnError where there is none, or there are several.
+    fn resolve(&self, py: Python<'_>, name: &str) -> PyResult<usize> {
+        self.run.resolve(name).map_err(|d| {
+            let d = d
+                .help("columns are asked for before a run: model.run(…, columns=[…])")
+                .help("after it run.measure(…) finds motions of markers");
+            errors::exception(py, Kind::Column, d, None)
+        })
+    }
+
+    /// Find the indices of the columns of a pattern, as `slider.*`, or of one name.
+    fn resolve_all(&self, py: Python<'_>, name: &str) -> PyResult<Vec<usize>> {
+        let found = self.run.resolve_all(name);
+        found.map_err(|d| errors::exception(py, Kind::Column, d, None))
+    }
+
     /// Return the values of a column: a view that cannot be written.
     fn column<'py>(slf: &Bound<'py, Self>, index: usize) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let py = slf.py();
@@ -329,13 +345,15 @@ impl Results {
         model: &Bound<'py, Model>,
         name: &str,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let asked = MarkerMeasure::of(name).ok_or_else(|| {
+        let of = &model.get().model;
+        let told = |wrong: Vec<Diagnostic>| errors::exception(py, Kind::Model, wrong, Some(name));
+        let asked = MarkerMeasure::of(of, name).map_err(told)?.ok_or_else(|| {
             let what = format!("`{name}` is no measure of markers alone");
             let d = Diagnostic::error("usage", what);
             let d = d.help("others are asked for before a run: model.run(…, columns=[…])");
             errors::exception(py, Kind::Model, d, Some(name))
         })?;
-        let column = Recorded::new(&self.run, &model.get().model).column(name, &asked);
+        let column = Recorded::new(&self.run, of).column(name, &asked);
         let column = column.map_err(|d| errors::exception(py, Kind::Model, d, None))?;
         let rows = self
             .run

@@ -10,7 +10,7 @@ use cognate::analysis::linear::Wanted;
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::state::Saved;
 use cognate::analysis::session::{self, Options};
-use cognate::dataset::command::{Script, Simulate, SimulationKind, Step};
+use cognate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use cognate::model::{ElementKind, SettingsStatement};
 use cognate::results::{Event, Status, json};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -61,6 +61,7 @@ impl Choices {
             columns: self.columns,
             full: (self.full)
                 .unwrap_or_else(|| of.model.settings.contains_key(&SettingsStatement::Results)),
+            named_only: self.full == Some(false),
             frames: self.frames,
             piecewise: self.piecewise,
             zero_user: self.zero_user,
@@ -116,7 +117,7 @@ impl Simulation {
 }
 
 /// A model and its clock.
-#[pyclass(module = "cognate._core", frozen)]
+#[pyclass(module = "pycognate._core", frozen)]
 pub struct Session {
     model: Py<Model>,
     session: Mutex<session::Session>,
@@ -264,7 +265,7 @@ impl Session {
 pub fn check_columns(py: Python<'_>, model: &Model, columns: &[String]) -> PyResult<()> {
     let mut wrong = Vec::new();
     for (k, text) in columns.iter().enumerate() {
-        for mut d in model.model.check_expression(text) {
+        for mut d in session::check_column(&model.model, text) {
             d.file = Some(format!("columns[{k}]"));
             wrong.push(d);
         }
@@ -278,7 +279,7 @@ pub fn check_columns(py: Python<'_>, model: &Model, columns: &[String]) -> PyRes
 }
 
 /// Commands of a file or a text.
-#[pyclass(module = "cognate._core", frozen)]
+#[pyclass(module = "pycognate._core", frozen)]
 pub struct Commands {
     script: Script,
 }
@@ -317,6 +318,24 @@ impl Commands {
     #[getter]
     fn model_file(&self) -> Option<PathBuf> {
         self.script.model_file()
+    }
+
+    /// The time at which the last simulation ends, where all say it.
+    #[getter]
+    fn end(&self) -> Option<f64> {
+        let simulations = self
+            .script
+            .steps
+            .iter()
+            .filter_map(|step| match &step.command {
+                Command::Simulate(simulate) => Some((simulate.end, simulate.duration)),
+                _ => None,
+            });
+        let mut last = Some(0.0);
+        for (end, duration) in simulations {
+            last = end.or_else(|| Some(last? + duration?)).or(last);
+        }
+        last.filter(|&end| end > 0.0)
     }
 
     /// The base name of results that the file gives.

@@ -48,7 +48,7 @@ fn row((run, values, measures, word, warnings, reason): Given) -> PyResult<Row> 
 }
 
 /// A model, its parameters and measures, and the commands that each run obeys.
-#[pyclass(module = "cognate._core", frozen)]
+#[pyclass(module = "pycognate._core", frozen)]
 pub struct Sweep {
     sweep: sweep::Sweep,
     raised: Raised,
@@ -204,7 +204,7 @@ impl Sweep {
 }
 
 /// The growing table of a sweep, with which an interrupted one is gone on.
-#[pyclass(module = "cognate._core", frozen)]
+#[pyclass(module = "pycognate._core", frozen)]
 pub struct Table {
     table: Mutex<sweep::Table>,
 }

@@ -68,7 +68,8 @@ fn ask(py: Python<'_>, law: &Py<PyAny>, call: &Call<'_>, results: &mut [f64]) ->
     if numbers.len() > results.len() || numbers.is_empty() {
         let (n, most, element) = (numbers.len(), results.len(), call.element);
         return Err(PyValueError::new_err(format!(
-            "the routine of {element} has returned {n} numbers; it computes at most {most}"
+            "the routine of {element} has returned {}; it computes at most {most}",
+            cognate::diagnostic::counted(n, "number")
         )));
     }
     if let Some(x) = numbers.iter().find(|x| !x.is_finite()) {

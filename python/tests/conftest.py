@@ -1,9 +1,10 @@
 """Models that tests share."""
 
+import os
 import signal
 from pathlib import Path
 
-import cognate as cg
+import pycognate as cg
 import pytest
 
 ROOT = Path(__file__).parents[2]
@@ -54,3 +55,16 @@ def ctrl_c_interrupts():
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Says what was left out and why; where CI is true, that is a failure (`pytest_sessionfinish`)."""
+    for report in terminalreporter.stats.get("skipped", []):
+        why = report.longrepr[2] if isinstance(report.longrepr, tuple) else report.longrepr
+        terminalreporter.write_line(f"left out: {report.nodeid}: {why}")
+
+
+def pytest_sessionfinish(session):
+    reporter = session.config.pluginmanager.get_plugin("terminalreporter")
+    if os.environ.get("CI") == "true" and reporter and reporter.stats.get("skipped"):
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED

@@ -2,7 +2,7 @@
 
 import math
 
-import cognate as cg
+import pycognate as cg
 import numpy as np
 import pytest
 

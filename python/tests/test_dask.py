@@ -3,7 +3,7 @@
 import os
 import signal
 
-import cognate as cg
+import pycognate as cg
 import numpy as np
 import pytest
 from test_sweep import DROP

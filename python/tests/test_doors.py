@@ -5,7 +5,7 @@ import pickle
 import subprocess
 from pathlib import Path
 
-import cognate as cg
+import pycognate as cg
 import pytest
 from conftest import ROOT
 

@@ -3,7 +3,7 @@
 import pickle
 import threading
 
-import cognate as cg
+import pycognate as cg
 import numpy as np
 import pytest
 
@@ -160,7 +160,7 @@ def test_expressions_pickle_compare_and_hash():
     again = pickle.loads(pickle.dumps(f))
     assert again == f and hash(again) == hash(f) and again(0.1) == f(0.1)
     assert cg.expr("TIME") != cg.expr("2*TIME")
-    assert type(f).__module__ == "cognate"
+    assert type(f).__module__ == "pycognate"
 
 
 def test_threads_share_an_expression():

@@ -1,11 +1,12 @@
 """Models: read, change, verify, run, linearize, USER, interruption, pickles."""
 
 import _thread
+import errno
 import pickle
 import threading
 import time
 
-import cognate as cg
+import pycognate as cg
 import numpy as np
 import pytest
 from conftest import FALLING, ROOT, SLIDER_CRANK
@@ -13,7 +14,10 @@ from conftest import FALLING, ROOT, SLIDER_CRANK
 
 def test_a_ball_falls(falling):
     run = falling.run(end=2.0, steps=4, columns=["VZ(2)"])
-    assert run.ok and run.status == "completed" and len(run.time) == 5
+    assert run.ok and run.status == "completed" and len(run) == len(run.time) == 5
+    assert list(run) == run.keys() and "ball.Z" in run and run.get("nothing") is None
+    assert [name for name, column in run.items() if len(column) != len(run)] == []
+    assert set(dict(run)) == set(run)
     np.testing.assert_allclose(run["ball.Z"], -5 * run.time**2, atol=1e-9)
     np.testing.assert_allclose(run["vz( 2 )"], -10 * run.time, atol=1e-9)
     assert run.units["VZ(2)"] == "meter/sec"
@@ -33,6 +37,33 @@ def test_all_mistakes_of_a_dataset_come_at_once():
     assert pickle.loads(pickle.dumps(error)).errors == error.errors
     with pytest.raises(cg.ModelError, match="cannot be opened"):
         cg.Model.read("nowhere.adm")
+
+
+def test_a_file_that_is_not_there_is_told_as_python_does(tmp_path):
+    elsewhere = tmp_path / "elsewhere.acf"
+    elsewhere.write_text("nowhere\n\nSIMULATE/DYNAMIC, END=1, STEPS=1\nSTOP\n")
+    for read, ours in [
+        (lambda: cg.Model.read(tmp_path / "nowhere.adm"), cg.ModelError),
+        (lambda: cg.run(tmp_path / "nowhere.acf"), cg.ModelError),
+        (lambda: cg.run(elsewhere), cg.ModelError),
+        (lambda: cg.read_results(tmp_path / "nowhere.csv"), cg.ResultsError),
+        (lambda: cg.read_res(tmp_path / "nowhere.res"), cg.ResultsError),
+        (lambda: cg.get_results(tmp_path / "nowhere.res"), cg.ResultsError),
+    ]:
+        with pytest.raises(FileNotFoundError) as caught:
+            read()
+        error = caught.value
+        assert isinstance(error, ours) and error.errno == errno.ENOENT
+        assert "nowhere" in error.filename and "nowhere" in str(error)
+        assert error.code in ("cannot_open", "file_unreadable")
+        again = pickle.loads(pickle.dumps(error))
+        assert type(again) is type(error) and again.errors == error.errors
+    # what is there, and is wrong, is none of them
+    wrong = tmp_path / "wrong.adm"
+    wrong.write_text("wrong\nPART/2, MASS=-1\nEND\n")
+    with pytest.raises(cg.ModelError) as found:
+        cg.Model.read(wrong)
+    assert not isinstance(found.value, OSError)
 
 
 def test_columns_are_checked_before_anything_runs(falling):

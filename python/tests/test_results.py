@@ -3,7 +3,7 @@
 import gc
 import pickle
 
-import cognate as cg
+import pycognate as cg
 import numpy as np
 import pytest
 

@@ -3,7 +3,7 @@
 import _thread
 import threading
 
-import cognate as cg
+import pycognate as cg
 import numpy as np
 import pytest
 from conftest import PUSHED
@@ -29,7 +29,7 @@ def test_rows_obey_newton_and_do_not_depend_on_threads(drop):
     parameters = {"VARIABLE/3": "1:4:4", "PART/2.MASS": np.array([1, 2, 8])}
     asked = dict(end=1.0, steps=10, kind="dynamic")
     table = drop.sweep(parameters, ["last(DX(2))", "max(VX(2))"], **asked)
-    assert table.parameters == ("VARIABLE/3", "PART/2.MASS") and len(table.run) == 12
+    assert table.parameters == ("VARIABLE/3", "PART/2.MASS") and len(table) == 12
     way = 0.5 * table["VARIABLE/3"] / table["PART/2.MASS"]
     np.testing.assert_allclose(table["last(DX(2))"], way, atol=1e-6)
     assert table.ok.all() and table.units["last(DX(2))"] == "meter"

@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-import cognate as cg
+import pycognate as cg
 import pytest
 
 CONFIGURATION = Path(__file__).parents[1] / "pyproject.toml"
@@ -21,12 +21,12 @@ def run_module(folder, *arguments):
 
 def test_stubs_are_those_of_the_compiled_half(tmp_path):
     pytest.importorskip("mypy")
-    run_module(tmp_path, "mypy.stubtest", "cognate._core")
+    run_module(tmp_path, "mypy.stubtest", "pycognate._core")
 
 
 def test_the_package_passes_strict_mypy(tmp_path):
     pytest.importorskip("mypy")
-    run_module(tmp_path, "mypy", "--config-file", str(CONFIGURATION), "-p", "cognate")
+    run_module(tmp_path, "mypy", "--config-file", str(CONFIGURATION), "-p", "pycognate")
 
 
 def test_the_package_says_that_it_is_typed():

@@ -26,6 +26,7 @@ pub mod motion;
 pub(in crate::analysis) mod quantity;
 mod runaway;
 pub mod session;
+pub mod stack;
 pub mod start;
 pub mod statics;
 pub mod sweep;

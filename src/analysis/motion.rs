@@ -11,7 +11,7 @@
 //! A level (displacement, velocity, acceleration) needs sets of six functions of the parts
 //! concerned, three of translation and three of rotation: its own, and those of the levels below.
 
-use super::session::columns::{name_of, unit_of};
+use super::session::columns::unit_of;
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::Input;
@@ -41,8 +41,10 @@ pub struct Recorded<'a> {
 }
 
 /// A measure of markers, as an expression that is nothing else: `DX(20,10)`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct MarkerMeasure {
+    /// with the numbers of its markers
+    text: Text,
     measure: Measure,
     arguments: [u32; 4],
     /// 0 displacement, 1 velocity, 2 acceleration
@@ -50,8 +52,16 @@ pub struct MarkerMeasure {
 }
 
 impl MarkerMeasure {
-    /// Reads an expression; `None`: it is something else than one measure of markers.
-    pub fn of(text: &str) -> Option<Self> {
+    /// Reads an expression, in which markers may have their names; `None`: it is something else
+    /// than one measure of markers.
+    ///
+    /// # Errors
+    /// Names of no marker, or of several.
+    pub fn of(model: &Model, text: &str) -> Result<Option<Self>, Vec<Diagnostic>> {
+        Ok(Self::of_numbers(&model.numbered(text)?.text))
+    }
+
+    fn of_numbers(text: &str) -> Option<Self> {
         let text = Text::from(text);
         let ast = text.ast().ok()?;
         let Some(Input::Measure(measure, arguments)) = ast.input(ast.root) else {
@@ -64,6 +74,7 @@ impl MarkerMeasure {
             Family::GenericForce | Family::ElementForce | Family::System => return None,
         };
         Some(Self {
+            text,
             measure,
             arguments,
             level,
@@ -113,7 +124,7 @@ impl<'a> Recorded<'a> {
         Ok(Column {
             name: name.to_owned(),
             values: values.collect(),
-            unit: unit_of(&Text::from(name), &self.run.units),
+            unit: unit_of(&asked.text, &self.run.units),
             bar_of: None,
         })
     }
@@ -162,7 +173,7 @@ impl<'a> Recorded<'a> {
                 frame,
             });
         }
-        let name = name_of(&part.place, body);
+        let name = self.model.labels().name(self.model, body);
         let levels = (0..=level).map(|level| self.set(body, &name, level));
         Ok(Carried {
             levels: Some(levels.collect::<Result<_, _>>()?),

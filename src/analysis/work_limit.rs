@@ -4,53 +4,20 @@ use super::system::System;
 use super::trajectory::Trajectory;
 use super::watch::Watch;
 use crate::clock::{self, Moment};
-use crate::disk;
 use crate::numeric::Stats;
 use crate::results::Run;
 use std::thread::ThreadId;
 use std::time::Duration;
 
-/// Shortest time between two looks at the clock of the processor, whose reading takes microseconds.
+/// Shortest time between two looks at the clock of the processor.
 const SHORTEST_LOOK: Duration = Duration::from_millis(1);
-
-/// Resolution of the clock of the processor, in s: systems count by ticks of 1 to 10 ms.
-const RESOLUTION: f64 = 0.01;
-
-/// Returns the processor time that a thread of this process has used, in s, where the system tells
-/// it; `None` as the thread: the one that asks.
-fn thread_seconds(thread: Option<&std::path::Path>) -> Option<f64> {
-    let folder = thread.unwrap_or_else(|| std::path::Path::new("/proc/thread-self"));
-    let mut bytes = [0; 80];
-    let n = disk::read_beginning(&folder.join("schedstat"), &mut bytes).ok()?;
-    let text = std::str::from_utf8(&bytes[..n]).ok()?;
-    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
-    Some(1e-9 * nanoseconds)
-}
-
-/// Lets the system bring the account of this thread up to now: it does so when it looks for another
-/// thread to run, else every few milliseconds, and a short run would have taken none or too much.
-fn settle() {
-    std::thread::yield_now();
-}
-
-/// Returns the processor time of this process, in s, where the system tells it: of all threads that
-/// are still there, where only files say it.
-fn process_seconds() -> Option<f64> {
-    if let Some(seconds) = clock::process_seconds() {
-        return Some(seconds);
-    }
-    settle();
-    let threads = disk::read_dir("/proc/self/task").ok()?;
-    let seconds = threads.filter_map(|t| thread_seconds(Some(&t.ok()?.path())));
-    Some(seconds.sum())
-}
 
 /// The processor time that all threads of this process use from some moment on. The account of a
 /// process begins before the program where it took the place of another, as `cargo run` ends.
 #[derive(Clone, Copy, Debug)]
 pub struct ProcessClock {
-    /// processor time of the process at the beginning, in s; `None`: not known here
-    start: Option<f64>,
+    /// processor time of the process at the beginning; `None`: not known here
+    start: Option<Duration>,
     begin: Moment,
 }
 
@@ -58,7 +25,7 @@ impl ProcessClock {
     /// Starts a clock.
     pub fn start() -> Self {
         Self {
-            start: process_seconds(),
+            start: clock::process_time(),
             begin: Moment::now(),
         }
     }
@@ -71,8 +38,8 @@ impl ProcessClock {
     /// Returns the processor time since the start, in s; where the system does not tell it, the
     /// time that has passed.
     pub fn seconds(&self) -> f64 {
-        let used = || Some(process_seconds()? - self.start?);
-        used().map_or_else(|| self.elapsed().as_secs_f64(), |used| used.max(0.0))
+        let used = || Some(clock::process_time()?.saturating_sub(self.start?));
+        used().unwrap_or_else(|| self.elapsed()).as_secs_f64()
     }
 }
 
@@ -81,18 +48,17 @@ impl ProcessClock {
 #[derive(Clone, Copy, Debug)]
 pub struct ProcessorClock {
     thread: ThreadId,
-    /// processor time of the thread at the beginning, in s; `None`: not known here
-    start: Option<f64>,
+    /// processor time of the thread at the beginning; `None`: not known here
+    start: Option<Duration>,
     begin: Moment,
 }
 
 impl ProcessorClock {
     /// Starts a clock for the thread that asks.
     pub fn start() -> Self {
-        settle();
         Self {
             thread: std::thread::current().id(),
-            start: thread_seconds(None),
+            start: clock::thread_time(),
             begin: Moment::now(),
         }
     }
@@ -100,14 +66,10 @@ impl ProcessorClock {
     /// Returns the processor time since the start, in s; asked by another thread, the time that has
     /// passed.
     pub fn seconds(&self) -> f64 {
-        let passed = self.begin.elapsed().as_secs_f64();
         let own = std::thread::current().id() == self.thread;
-        if own {
-            settle();
-        }
-        let used = || Some(thread_seconds(None)? - self.start?);
+        let used = || Some(clock::thread_time()?.saturating_sub(self.start?));
         let used = own.then(used).flatten();
-        used.map_or(passed, |used| used.clamp(0.0, passed))
+        used.unwrap_or_else(|| self.begin.elapsed()).as_secs_f64()
     }
 }
 
@@ -127,11 +89,10 @@ impl WorkLimit {
     }
 
     /// Returns the processor time that is left at least, in s; zero or less: none. A thread uses no
-    /// more of it than passes: before that much has, the clock of the processor, whose reading
-    /// takes microseconds, is not looked at; nor for limits that it is too coarse for.
+    /// more of it than passes: before that much has, the clock of the processor is not looked at.
     pub fn left(&self) -> f64 {
         let left = self.seconds - self.clock.begin.elapsed().as_secs_f64();
-        match left > 0.0 || self.seconds < RESOLUTION {
+        match left > 0.0 {
             true => left,
             false => self.seconds - self.clock.seconds(),
         }
@@ -199,7 +160,7 @@ mod tests {
         let limit = WorkLimit::begin(0.05);
         std::thread::sleep(Duration::from_millis(80));
         // where the system does not tell processor time, waiting counts
-        let told = thread_seconds(None).is_some();
+        let told = clock::thread_time().is_some();
         assert_eq!(limit.left() > 0.0, told);
         let mut caller = Unwatched;
         let mut limited = Limited::new(&mut caller, limit);
@@ -212,7 +173,7 @@ mod tests {
 
     #[test]
     fn work_of_a_millisecond_is_told() {
-        let told = thread_seconds(None).is_some();
+        let told = clock::thread_time().is_some();
         for _ in 0..20 {
             // a clock of the process would see the threads of other tests end
             let clock = ProcessorClock::start();

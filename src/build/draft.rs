@@ -6,6 +6,7 @@ use super::{Element, Inner, ModelBuilder, Setting};
 use crate::dataset::row::{Argument, Given, Meaning, Record, Statement, canonical, meaning};
 use crate::dataset::statement::{STATEMENTS, find};
 use crate::diagnostic::{Cause, Diagnostic, Error, Severity, Span, near_names};
+use crate::model::check::names::names_twice;
 use crate::model::{ElementId, ElementKind, Model, Place};
 use std::collections::BTreeSet;
 
@@ -193,6 +194,11 @@ impl Inner {
         for draft in bodies.chain(rest).filter(|draft| !draft.is_lost) {
             wrong.extend(draft.enter(&mut model));
         }
+        wrong.extend(
+            names_twice(&model)
+                .into_iter()
+                .map(|ids| twice(&model, ids)),
+        );
         // what seems to be missing may be what was not understood
         let mistaken: BTreeSet<String> = wrong.iter().filter_map(|d| d.element.clone()).collect();
         let mistaken = model.with_readers_of_data(mistaken);
@@ -208,6 +214,16 @@ impl Inner {
             Err(wrong.into())
         }
     }
+}
+
+/// Says that two elements of a kind have one name, as a cell of a notebook that has run twice makes
+/// them.
+fn twice(model: &Model, (first, second): (ElementId, ElementId)) -> Diagnostic {
+    let what = format!("{first} has this name already");
+    let said = Diagnostic::error("name_twice", what).element(second);
+    named(model, said).help(
+        "each element of a kind needs a name of its own; a notebook begins a new builder in the cell that adds to it",
+    )
 }
 
 /// Adds the name of the element that a mistake is about.

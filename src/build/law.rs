@@ -2,7 +2,7 @@
 
 use super::{Element, ModelBuilder, Setting};
 use crate::analysis::system::closures::{Call, Hook};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, counted};
 use crate::model::ElementKind;
 use std::sync::Arc;
 
@@ -110,7 +110,10 @@ impl ModelBuilder {
                 law: Arc::new(law),
             }),
             Some((n, meaning)) => {
-                let what = format!("its closure returns {count} numbers; it needs {n}: {meaning}");
+                let what = format!(
+                    "its closure returns {}; it needs {n}: {meaning}",
+                    counted(count, "number")
+                );
                 inner.drafts[draft].refuse(Diagnostic::error("wrong_count", what));
             }
             None => {

@@ -14,6 +14,7 @@
 //! | `draft.rs` | statements on their way into the model |
 //! | `pose.rs` | markers that stand at places in ground |
 //! | `law.rs` | closures of numbers, typed |
+//! | `words.rs` | the words by which Python and C add elements, from the table of statements |
 //!
 //! Arguments are those of the table of statements, by their keywords: whatever a dataset can say, a
 //! builder can. The same rules check both.
@@ -24,11 +25,13 @@ mod law;
 mod pose;
 mod setting;
 mod statements;
+mod words;
 
 pub use element::{Body, Element, Frame, Key, Other};
 pub use law::Results;
 pub use pose::End;
 pub use setting::Setting;
+pub use words::Word;
 
 use crate::analysis::session::{Options, Session};
 use crate::analysis::system::closures::Hook;

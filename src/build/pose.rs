@@ -150,6 +150,13 @@ fn euler(r: &Mat3<f64>) -> [f64; 3] {
 }
 
 impl ModelBuilder {
+    /// Returns a body or marker as the end of a joint or force; `None`: it is another statement, or
+    /// one of another builder.
+    pub fn end(&self, key: Key) -> Option<End> {
+        let body = self.body(key).map(|body| End::from(&body));
+        body.or_else(|| self.frame(key).map(|marker| End::from(&marker)))
+    }
+
     /// Makes a marker on the body of a draft, at a place in ground.
     pub(super) fn marker_at(&self, body: usize, place: [f64; 3]) -> Element<'_, Frame> {
         let mut inner = self.inner.borrow_mut();

@@ -20,7 +20,7 @@
 use made::Made;
 
 use super::syntax::{Item, Source, Syntax, TokenKind};
-use crate::diagnostic::{Cause, Diagnostic, Severity, Span, near_names};
+use crate::diagnostic::{Diagnostic, Severity, Span, near_names};
 use crate::expr::measures::Measure;
 use crate::model::geometry::orientation;
 use crate::model::{
@@ -152,19 +152,18 @@ fn initial_values(source: &Source, span: Span, model: &mut Model, out: &mut Vec<
     let Some(((element, at), values)) = pieces.split_first() else {
         return;
     };
-    let id = match element.parse::<ElementId>() {
-        Ok(id) if matches!(id.kind, ElementKind::Joint | ElementKind::Marker) => id,
-        Ok(id) => {
-            let d = bad(format!("{id}: joints and markers have initial values here"));
-            let d = d.help("those of a PART are its VX, VY, VZ, WX, WY, WZ and EXACT");
+    let id = match model.find_of(&[ElementKind::Joint, ElementKind::Marker], element) {
+        Ok(id) => id,
+        Err(d) => {
+            let d = match model.find_of(&[ElementKind::Part, ElementKind::PointMass], element) {
+                Ok(id) => bad(format!("{id}: joints and markers have initial values here"))
+                    .help("those of a PART are its VX, VY, VZ, WX, WY, WZ and EXACT"),
+                Err(_) if element.is_empty() => bad("a joint or a marker is expected").help(USAGE),
+                Err(_) => d,
+            };
             return out.push(source.locate(d, *at));
         }
-        Err(why) => return out.push(source.locate(bad(why).help(USAGE), *at)),
     };
-    if !model.has(id) {
-        let d = Diagnostic::error(Cause::UnknownElement, format!("{id} does not exist"));
-        return out.push(source.locate(d, *at));
-    }
     let known = model.initial_quantities(id);
     if values.is_empty() || known.is_empty() {
         let d = match known.is_empty() {
@@ -263,7 +262,7 @@ fn parts_of(
     }
     for (member, at) in &body.members {
         let is_body = all.iter().any(|b| b.name == *member);
-        let id = member.parse::<ElementId>();
+        let id = model.find_of(&[ElementKind::Part], member);
         let wrong = match id {
             _ if is_body => Some(
                 rigid(format!(
@@ -272,13 +271,6 @@ fn parts_of(
                 ))
                 .help(format!("name the parts of {member} instead, in one line")),
             ),
-            Ok(id) if id.kind != ElementKind::Part => Some(rigid(format!(
-                "{id} is no PART: a rigid body is made of parts"
-            ))),
-            Ok(id) if !model.has(id) => Some(Diagnostic::error(
-                Cause::UnknownElement,
-                format!("{id} does not exist"),
-            )),
             Ok(id) => match of_part.insert(id, body.name.clone()) {
                 None => {
                     parts.push(id.number);
@@ -295,7 +287,11 @@ fn parts_of(
                     .help("a part is in one rigid body at most"),
                 ),
             },
-            Err(why) => Some(rigid(why).help(USAGE)),
+            Err(d) if model.find_element(member).is_ok() => Some(rigid(format!(
+                "{}: a rigid body is made of parts",
+                d.message
+            ))),
+            Err(d) => Some(d),
         };
         found.extend(wrong.map(|d| source.locate(d, *at)));
     }

@@ -145,7 +145,7 @@ fn shell(text: &str) -> Result<Vec<[f64; 3]>, String> {
     let mut out = Vec::new();
     for _ in 0..n {
         let Some((line, words)) = rows.next() else {
-            return Err(format!("it ends early: {} points of {n}", out.len()));
+            return Err(format!("it ends early, after {} of {n} points", out.len()));
         };
         let numbers: Option<Vec<f64>> = words.iter().map(|w| number(w)).collect();
         match numbers.as_deref() {
@@ -223,8 +223,8 @@ mod tests {
     #[test]
     fn what_is_wrong_is_said_with_its_line() {
         for (name, text, said) in [
-            ("a.shl", "4 4\n0 0 0\n1 0 0\n", "2 points of 4"),
-            ("a.shl", "99999999999 4\n0 0 0\n", "1 points of"),
+            ("a.shl", "4 4\n0 0 0\n1 0 0\n", "2 of 4 points"),
+            ("a.shl", "99999999999 4\n0 0 0\n", "1 of 99999999999 points"),
             ("a.shl", "4 4\n0 0 0\n1 0\n", "line 3"),
             ("a.shl", "tetrahedron\n", "first line"),
             ("a.shl", "", "no point"),

@@ -117,7 +117,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<Reading, Error> {
 /// When the file cannot be opened.
 pub fn open(path: impl AsRef<Path>) -> Result<Source, Error> {
     let path = path.as_ref();
-    let file = path.display().to_string();
+    let file = disk::text(&path);
     Ok(Source::from_bytes(Some(&file), &load(path)?))
 }
 
@@ -130,14 +130,14 @@ pub fn read_text(text: &str) -> Reading {
 fn load(path: &Path) -> Result<Vec<u8>, Error> {
     let bytes = disk::read(path).map_err(|e| {
         let mut d = Diagnostic::error("cannot_open", format!("cannot be opened: {e}"));
-        d.file = Some(path.display().to_string());
+        d.file = Some(disk::text(&path));
         Error::from(d).with_source(e)
     })?;
     if !syntax::is_no_text(&bytes) {
         return Ok(bytes);
     }
     let mut d = Diagnostic::error("no_text", "is no text: too many bytes are no characters");
-    d.file = Some(path.display().to_string());
+    d.file = Some(disk::text(&path));
     Err(Error::from(d.help(
         "datasets, command files and logs are lines of text; what a program keeps in a format of its \
          own it exports",

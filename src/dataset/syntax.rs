@@ -15,7 +15,7 @@ use pest::iterators::Pair;
 pub struct Source {
     /// file it came from, as shown in messages
     pub file: Option<String>,
-    /// the text; bytes that are not UTF-8 were taken as UTF-16 or Latin-1
+    /// the text; bytes that are not UTF-8 were taken as UTF-16 or Windows-1252
     pub text: String,
     /// how it stood in the file, and is to be written again
     pub encoding: Encoding,
@@ -61,7 +61,7 @@ impl Source {
         }
     }
 
-    /// The bytes of a file: UTF-16 or UTF-8 if they are, otherwise Latin-1.
+    /// The bytes of a file: UTF-16 or UTF-8 if they are, otherwise Windows-1252.
     pub fn from_bytes(file: Option<&str>, bytes: &[u8]) -> Self {
         let encoding = Encoding::of(bytes);
         Self {

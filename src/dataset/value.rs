@@ -184,6 +184,24 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Returns its name in the manual as data.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Kind::Flag => "flag",
+            Kind::Id => "integer",
+            Kind::Ids { .. } => "integers",
+            Kind::Real { angle: false } => "real",
+            Kind::Real { angle: true } => "angle",
+            Kind::Reals { angle: false, .. } => "reals",
+            Kind::Reals { angle: true, .. } => "angles",
+            Kind::Word(_) => "word",
+            Kind::Words(_) => "words",
+            Kind::Text | Kind::Raw => "text",
+            Kind::Texts => "texts",
+            Kind::Formula => "expression",
+        }
+    }
+
     /// Returns its name in messages.
     pub fn describe(&self) -> String {
         let count = |min: usize, max: usize, what: &str| match (min, max) {

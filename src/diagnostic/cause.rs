@@ -16,14 +16,20 @@ pub enum Cause {
     Assembly,
     /// a curve or surface is given by what cannot be read
     CurveData,
+    /// a file of results ends too early
+    CutOff,
     /// an operation has no value for what it is given
     Domain,
+    /// a file of somebody else stands where one is to be written
+    FileExists,
     /// a file or folder cannot be written
     FileUnwritable,
     /// a simulation that needs a mechanism without freedom
     Freedom,
     /// inertias that no body has
     ImpossibleInertia,
+    /// a file that is to be written is an input of the same command
+    IsInput,
     /// a column cannot be computed for the rows so far
     LateColumn,
     /// axes of a loop are parallel within tolerance, not exactly
@@ -55,10 +61,13 @@ impl Cause {
             Self::Approximate => "approximate",
             Self::Assembly => "assembly",
             Self::CurveData => "curve_data",
+            Self::CutOff => "cut_off",
             Self::Domain => "domain",
+            Self::FileExists => "file_exists",
             Self::FileUnwritable => "file_unwritable",
             Self::Freedom => "freedom",
             Self::ImpossibleInertia => "impossible_inertia",
+            Self::IsInput => "is_input",
             Self::LateColumn => "late_column",
             Self::Misaligned => "misaligned",
             Self::MissingValue => "missing_value",

@@ -93,7 +93,8 @@ An operand or a closing parenthesis is missing at the end. The column is one pas
         summary: "a name that is no constant and no function of the language",
         explanation: "\
 Names are those of the language alone: constants (TIME, PI, DTOR, RTOD, MODE), IF, functions, and measures of the model.
-`cognate functions` lists them. There are no variables of one's own; a VARIABLE of the model is read by VARVAL(id).
+`cognate functions` lists them. A dataset has no variables of one's own: it reads a VARIABLE of the model by VARVAL(id).
+Programs and the prompt can name some: `Names` in Rust, `variables=` in Python, `:let` at the prompt.
 
 Upper and lower case are the same. Names of other languages are answered with what to write: LN is LOG, INT is AINT. The two
 languages keep their names apart: time is TIME in direct-entry functions and t in expression functions.
@@ -397,6 +398,46 @@ words. A file is written beside its place and then moved there, so that a failur
     cognate run model.acf --out /tmp/results",
     },
     Code {
+        name: "file_exists",
+        summary: "a file that is to be written is there already, and this program has not written it",
+        explanation: "\
+No command replaces what it, or another command of this program, has not written as it stands there: name another file or
+folder, or let --overwrite replace it. What is replaced is kept once, with a ~ behind its name. The files of a run are known
+by its record, all others by .cognate.json beside them; a file that was changed or copied elsewhere is nobody's of this
+program.
+
+    cognate draw model.adm -o picture.svg --overwrite",
+    },
+    Code {
+        name: "is_input",
+        summary: "a file that is to be written is one that the same command reads",
+        explanation: "\
+The model, its commands and whatever they name (datasets, meshes, points of splines and curves, saved states, the set-up
+beside a model) are never replaced by the command that reads them, under whatever name and through whatever link, also not
+with --overwrite. Name another file.
+
+    cognate fmt model.adm -o tidy.adm",
+    },
+    Code {
+        name: "outside_folder",
+        summary: "a name in a command file leads out of the folder of the results",
+        explanation: "\
+OUTPUT_PREFIX and LINEAR, FILE= name files of results. Command files come from others: names with a path of their own
+machine, or with .. in them, are taken without their folders, so that nothing lands where it was not sent. --trust-paths
+takes them as they stand.
+
+    OUTPUT_PREFIX=../../runs/first        files are called first.csv, first.res …",
+    },
+    Code {
+        name: "cut_off",
+        summary: "a file of results ends too early; its whole rows are read",
+        explanation: "\
+The program that wrote it was ended, the disk was full, or a copy broke off. A row whose end is missing is left out, since
+its last number may lack digits; so is a last line of a .csv without a line break. An end between two rows does not show.
+
+    cognate convert results/model.csv.part1 rows.csv",
+    },
+    Code {
         name: "result_format",
         summary: "the name of a file tells no format of results that is known",
         explanation: "\
@@ -411,8 +452,8 @@ The ending of a file's name tells its format. Read are .res (XML and the old tex
         explanation: "\
 The message has the line, where there is one. In .csv files every row has as many cells as the first, which holds the
 names; a second row may hold units; all else are numbers. In .res files every component has a number of its own, and
-every step has as many values as there are components. A file that a program was still writing ends too early: convert
-it again when it is complete.
+every step has as many values as there are components. A file that ends too early is read up to its last whole row
+(cut_off), if it has one.
 
     time,x
     0,1

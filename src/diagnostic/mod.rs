@@ -6,10 +6,12 @@
 
 mod cause;
 pub mod codes;
+mod count;
 mod error;
 mod subject;
 
 pub use cause::Cause;
+pub use count::counted;
 pub use error::Error;
 pub use subject::Subject;
 
@@ -169,18 +171,22 @@ impl std::error::Error for Diagnostic {}
 /// Close means an edit distance (with transpositions) of at most a third of the length, a common
 /// beginning, or a fifth of the length from an abbreviation (`ROTATON` of `ROTATIONAL`).
 pub fn near_names<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
-    let name = name.to_ascii_uppercase();
+    let name = beginning(name, MOST_COMPARED).to_ascii_uppercase();
+    let n = name.chars().count();
     let (limit, limit_abbreviated) = ((name.len() / 3).max(1), name.len() / 5);
     let mut found: Vec<(usize, &str)> = known
         .into_iter()
         .filter_map(|k| {
-            let upper = k.to_ascii_uppercase();
-            let distances = edit_distances(&name, &upper);
-            let d = *distances.last().unwrap_or(&0);
-            let abbreviated = distances.iter().any(|&d| d <= limit_abbreviated);
+            let upper = beginning(k, MOST_COMPARED).to_ascii_uppercase();
+            let distance_to = |m| strsim::osa_distance(&name, beginning(&upper, m));
+            let d = distance_to(MOST_COMPARED);
             let begins = name.len() >= 3
                 && (upper.starts_with(&name) || name.starts_with(&upper) && upper.len() >= 3);
-            (d <= limit || begins || abbreviated && limit_abbreviated > 0).then_some((d, k))
+            // others differ in length by more
+            let mut abbreviations = n - limit_abbreviated.min(n)..=n + limit_abbreviated;
+            let abbreviates = |m| distance_to(m) <= limit_abbreviated;
+            let is_near = d <= limit || begins;
+            (is_near || limit_abbreviated > 0 && abbreviations.any(abbreviates)).then_some((d, k))
         })
         .collect();
     found.sort();
@@ -189,25 +195,13 @@ pub fn near_names<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> V
     found.into_iter().map(|f| f.1).collect()
 }
 
-/// Counts the insertions, deletions, replacements and swaps of neighbours between a word and every
-/// beginning of another, the empty one first (optimal string alignment).
-fn edit_distances(a: &str, b: &str) -> Vec<usize> {
-    let (a, b): (Vec<char>, Vec<char>) =
-        (a.chars().take(64).collect(), b.chars().take(64).collect());
-    let mut rows = vec![(0..=b.len()).collect::<Vec<usize>>()];
-    for i in 1..=a.len() {
-        let mut row = vec![i];
-        for j in 1..=b.len() {
-            let replace = rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            let mut d = replace.min(rows[i - 1][j] + 1).min(row[j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                d = d.min(rows[i - 2][j - 2] + 1);
-            }
-            row.push(d);
-        }
-        rows.push(row);
-    }
-    rows.swap_remove(a.len())
+/// Letters of a name that are compared: the work grows with the cube.
+const MOST_COMPARED: usize = 64;
+
+/// Returns the first `n` letters of a word.
+fn beginning(word: &str, n: usize) -> &str {
+    let end = word.char_indices().nth(n).map(|(at, _)| at);
+    end.and_then(|end| word.get(..end)).unwrap_or(word)
 }
 
 #[cfg(test)]

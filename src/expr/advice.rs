@@ -10,7 +10,7 @@ use super::names::Names;
 use super::signature::Kind;
 use super::symbols::{self, Symbol};
 use super::token::{self, About, Fault, FaultKind, Lexer, Open};
-use crate::diagnostic::{Diagnostic, Span, near_names};
+use crate::diagnostic::{Diagnostic, Span, counted, near_names};
 
 /// Returns the diagnostic for the first mistake of a text.
 pub(crate) fn explain(text: &str, dialect: Dialect, names: &Names, fault: &Fault) -> Diagnostic {
@@ -497,7 +497,7 @@ impl Place<'_> {
 const NO_COMPARISONS: &str =
     "there are no comparisons; IF(a-b: x, y, z) is x where a < b, y where a = b, z where a > b";
 const STAR: &str = "multiplication is written with a star, as in 2*TIME";
-const NO_VARIABLES: &str = "there are no variables of one's own: write the number, or read a VARIABLE of the model by VARVAL(id)";
+const NO_VARIABLES: &str = "write the number, or read a VARIABLE of the model by VARVAL(id); programs and the prompt can name variables of their own";
 
 /// Advises on a name that Adams View knows and the solver does not.
 fn of_view(name: &str) -> String {
@@ -505,7 +505,7 @@ fn of_view(name: &str) -> String {
         return format!("`{name}` is a variable of Adams View: write its value");
     }
     format!(
-        "`{name}` is a name of Adams View; here elements are called by their numbers, as in DX(12, 21)"
+        "`{name}` is a name of Adams View; functions take the numbers of elements, as DX(12, 21)"
     )
 }
 
@@ -527,7 +527,7 @@ fn is_constant(meaning: Symbol) -> bool {
 fn arity(name: &str, (least, most): (usize, usize), signature: String, count: usize) -> Said {
     let takes = match (least, most) {
         (1, 1) => "one argument".to_string(),
-        (a, b) if a == b => format!("{a} arguments"),
+        (a, b) if a == b => counted(a, "argument"),
         (a, b) if b > 1000 => format!("{a} or more arguments"),
         (a, b) => format!("{a} to {b} arguments"),
     };

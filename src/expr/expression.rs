@@ -10,7 +10,7 @@ use super::parse::{parse, parse_named};
 use super::program::{Input, Program, too_few};
 use super::symbols::Profile;
 use super::walk::{self, Host};
-use crate::diagnostic::{Cause, Diagnostic, Error, Span};
+use crate::diagnostic::{Cause, Diagnostic, Error, Span, counted};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
@@ -217,7 +217,11 @@ impl Expr {
             None => Ok(()),
             Some((&input, column)) => {
                 let (name, had) = (self.input_name(input), column.len());
-                let what = format!("the column of {name} has {had} values for {n} points");
+                let what = format!(
+                    "the column of {name} has {} for {}",
+                    counted(had, "value"),
+                    counted(n, "point")
+                );
                 Err(Diagnostic::error(Cause::MissingValue, what).into())
             }
         }

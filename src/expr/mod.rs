@@ -18,6 +18,7 @@
 //! | names | `functions/` `measures.rs` `interpolation/` | tables of the functions |
 //! | | `signature.rs` `symbols.rs` | arguments of functions; meanings of names in each language |
 //! | text | `token.rs` `check.rs` | tokens; one ordered pass finds the first mistake, with its place |
+//! | | `expansion.rs` | texts in which names are replaced, and their places
 //! | | `names.rs` | variables, constants and functions of a caller's own |
 //! | | `advice.rs` `foreign.rs` | advice on mistakes; words of other languages |
 //! | | `lint/` | warnings about what is legal but hardly meant |
@@ -41,6 +42,7 @@ mod check;
 pub mod compile;
 pub mod dimension;
 mod evaluator;
+mod expansion;
 mod expression;
 mod finite;
 mod foreign;
@@ -64,6 +66,7 @@ pub mod walk;
 
 pub use check::{DEEPEST_NESTING, Limits, MOST_CHARACTERS};
 pub use evaluator::Evaluator;
+pub use expansion::Expansion;
 pub use expression::{Expr, input_named};
 pub use lint::lint;
 pub use names::Names;

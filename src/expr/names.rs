@@ -11,7 +11,7 @@ use super::check::{DEEPEST_NESTING, MOST_CHARACTERS};
 use super::parse::parse_named;
 use super::program::Sym;
 use super::symbols::{Profile, symbol};
-use crate::diagnostic::{Diagnostic, Error};
+use crate::diagnostic::{Diagnostic, Error, counted};
 use std::fmt;
 use std::sync::Arc;
 
@@ -379,8 +379,10 @@ impl Names {
             self.refuse(format!("{name} is registered twice"), Some(advice));
         } else if is_function && !(1..=MOST_ARGUMENTS).contains(&arguments.len()) {
             let n = arguments.len();
-            let what =
-                format!("{name} takes {n} arguments; a function takes 1 to {MOST_ARGUMENTS}");
+            let what = format!(
+                "{name} takes {}; a function takes 1 to {MOST_ARGUMENTS}",
+                counted(n, "argument")
+            );
             self.refuse(what, None);
         } else {
             self.entries.push(Entry {

@@ -4,6 +4,7 @@
 //! either side. An inner knot belongs to the interval on its right, the last knot to the last
 //! interval.
 
+use crate::diagnostic::counted;
 use crate::scalar::Table;
 
 /// The end conditions of a cubic spline.
@@ -61,15 +62,15 @@ impl std::error::Error for UnfitData {}
 pub(super) fn check(x: &[f64], y: &[f64], least: usize) -> Result<(), UnfitData> {
     if x.len() != y.len() {
         return Err(UnfitData(format!(
-            "{} values of x but {} of y",
-            x.len(),
+            "{} of x but {} of y",
+            counted(x.len(), "value"),
             y.len()
         )));
     }
     if x.len() < least {
         return Err(UnfitData(format!(
-            "{} points, but at least {least} are needed",
-            x.len()
+            "{}, but at least {least} are needed",
+            counted(x.len(), "point")
         )));
     }
     if let Some(k) = x
@@ -448,7 +449,8 @@ fn curvatures(x: &[f64], y: &[f64], ends: Ends) -> Result<Vec<f64>, UnfitData> {
         Ends::NotAKnot => {
             if n < 4 {
                 return Err(UnfitData(format!(
-                    "{n} points, but not-a-knot ends need at least 4"
+                    "{}, but not-a-knot ends need at least 4",
+                    counted(n, "point")
                 )));
             }
             // M₀ = (1 + r) M₁ − r M₂ with r = h₀/h₁ makes the third derivative continuous at x₁;
@@ -669,7 +671,7 @@ mod tests {
         };
         assert_eq!(
             refuse(&[0.0], &[1.0], Ends::Natural),
-            "1 points, but at least 2 are needed"
+            "1 point, but at least 2 are needed"
         );
         assert_eq!(
             refuse(&[0.0, 0.0], &[1.0, 2.0], Ends::Natural),

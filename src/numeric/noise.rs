@@ -35,6 +35,7 @@
 
 use super::control::{Weights, worst};
 use super::{Ode, Options, Stats};
+use crate::random::{Random, sign};
 
 /// C of (2): the weights of the stages in an error estimate have a root sum of squares of about 2,
 /// and the smallest of three probes underestimates the largest rounding in a sample.
@@ -341,7 +342,8 @@ fn measure<P: Ode + ?Sized>(
             } else {
                 0.0
             };
-            *probe = y + f64::EPSILON * sign(i as u64, k) * y.abs().max(part);
+            *probe =
+                y + f64::EPSILON * sign(Random::bits_at(i as u64 * PROBES + k)) * y.abs().max(part);
         }
         stats.evaluations += 1;
         let changed = match problem.rate(at.t, probe, rate) {
@@ -355,15 +357,4 @@ fn measure<P: Ode + ?Sized>(
         least = if changed < least { changed } else { least };
     }
     if least.is_finite() { least } else { 0.0 }
-}
-
-/// Returns a random sign for unknown `i` in probe `k`, the same in every run (splitmix64).
-fn sign(i: u64, k: u64) -> f64 {
-    let mut z = i
-        .wrapping_mul(PROBES)
-        .wrapping_add(k + 1)
-        .wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    if (z ^ (z >> 31)) & 1 == 0 { 1.0 } else { -1.0 }
 }

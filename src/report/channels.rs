@@ -1,7 +1,7 @@
 //! Channels: columns of one or several runs as curves, as they are or transformed, and their
 //! arrangement in pictures: one axis a unit.
 
-use super::plot::{Curve, Plot, unknown_column, with_unit};
+use super::plot::{Curve, Plot, with_unit};
 use super::transform;
 use crate::diagnostic::Diagnostic;
 use crate::results::Run;
@@ -51,6 +51,7 @@ pub fn channels(
     names: &[String],
     shown: Shown,
 ) -> Result<Channels, Diagnostic> {
+    let names = &expanded(sources, names)?;
     let mut all = Channels {
         title: String::new(),
         x_label: String::new(),
@@ -88,11 +89,25 @@ pub fn channels(
     Ok(all)
 }
 
+/// Returns names with all columns of the first run in the place of a pattern.
+fn expanded(sources: &[Source], names: &[String]) -> Result<Vec<String>, Diagnostic> {
+    let mut all = Vec::new();
+    for name in names {
+        let Some(Source { run, .. }) = sources.first().filter(|_| name.contains(['*', '?'])) else {
+            all.push(name.clone());
+            continue;
+        };
+        let columns = run.resolve_all(name)?.into_iter();
+        all.extend(columns.map(|c| run.columns[c].name.clone()));
+    }
+    Ok(all)
+}
+
 /// Returns the unit of x.
 fn unit_of_x(run: &Run, x: Option<&str>) -> Result<String, Diagnostic> {
     let column = match x {
         None => 0,
-        Some(name) => run.find(name).ok_or_else(|| unknown_column(run, name))?,
+        Some(name) => run.resolve(name)?,
     };
     Ok(run
         .columns

@@ -4,7 +4,7 @@
 //! every machine. In a PDF they are outlines, which need no face to be read.
 
 use crate::diagnostic::Diagnostic;
-use crate::results;
+use crate::disk;
 use std::path::Path;
 
 /// A format of pictures.
@@ -51,16 +51,17 @@ impl PictureFormat {
     }
 }
 
-/// Writes a picture to a file, in the format of its name; `svg`: the text of the picture as SVG.
+/// Returns the contents of a file of a picture, in the format of its name; `svg`: the text of the
+/// picture as SVG.
 ///
 /// # Errors
-/// When no format of pictures has this ending, or the file cannot be written.
-pub fn write(svg: &str, file: &Path) -> Result<(), Diagnostic> {
+/// When no format of pictures has this ending, or it is none of this program.
+pub fn bytes(svg: &str, file: &Path) -> Result<Vec<u8>, Diagnostic> {
     let Some(format) = PictureFormat::of(file) else {
-        let what = format!("{}: pictures are .svg, .png and .pdf", file.display());
+        let what = format!("{}: pictures are .svg, .png and .pdf", disk::text(&file));
         return Err(Diagnostic::error("picture_format", what));
     };
-    results::write_bytes(file, &format.bytes(svg)?)
+    format.bytes(svg)
 }
 
 #[cfg(any(feature = "png", feature = "pdf"))]
@@ -100,15 +101,36 @@ fn tree(svg: &str) -> Result<resvg::usvg::Tree, Diagnostic> {
 
 #[cfg(feature = "png")]
 fn png(svg: &str) -> Result<Vec<u8>, Diagnostic> {
+    pixmap(svg, DOTS_PER_PX)?.encode_png().map_err(failed)
+}
+
+/// Draws a picture with so many dots a px.
+#[cfg(feature = "png")]
+fn pixmap(svg: &str, per_px: f32) -> Result<resvg::tiny_skia::Pixmap, Diagnostic> {
     use resvg::tiny_skia::{Pixmap, Transform};
     let tree = tree(svg)?;
     let size = tree.size();
-    let dots = |px: f32| (px * DOTS_PER_PX).ceil() as u32;
+    let dots = |px: f32| (px * per_px).ceil() as u32;
     let dots = Pixmap::new(dots(size.width()), dots(size.height()));
     let mut dots = dots.ok_or_else(|| failed("it has no size"))?;
-    let larger = Transform::from_scale(DOTS_PER_PX, DOTS_PER_PX);
+    let larger = Transform::from_scale(per_px, per_px);
     resvg::render(&tree, larger, &mut dots.as_mut());
-    dots.encode_png().map_err(failed)
+    Ok(dots)
+}
+
+/// Returns the dots of a picture, one a px, red, green and blue, with its width and height.
+///
+/// # Errors
+/// When it cannot be drawn.
+#[cfg(feature = "gif")]
+pub(super) fn dots(svg: &str) -> Result<(Vec<[u8; 3]>, [u16; 2]), Diagnostic> {
+    let dots = pixmap(svg, 1.0)?;
+    let [Ok(width), Ok(height)] = [dots.width(), dots.height()].map(u16::try_from) else {
+        return Err(failed("it is too large"));
+    };
+    // pictures have a ground, on which nothing is transparent
+    let all = dots.pixels().iter().map(|p| [p.red(), p.green(), p.blue()]);
+    Ok((all.collect(), [width, height]))
 }
 
 #[cfg(not(feature = "png"))]
@@ -169,6 +191,6 @@ mod tests {
         assert_eq!(of("a/b.PNG"), Some(PictureFormat::Png));
         assert_eq!(of("b.svg.pdf"), Some(PictureFormat::Pdf));
         assert_eq!(of("png").or(of("b.txt")), None);
-        assert!(write("", Path::new("b.txt")).is_err());
+        assert!(bytes("", Path::new("b.txt")).is_err());
     }
 }

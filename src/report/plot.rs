@@ -4,7 +4,7 @@
 //! thinned to the smallest and largest value of each column, so that no peak is lost and files stay
 //! small.
 
-use crate::diagnostic::{Diagnostic, near_names};
+use crate::diagnostic::Diagnostic;
 use crate::results::Run;
 
 /// A range from its smallest to its largest value.
@@ -50,12 +50,11 @@ impl Plot {
     /// # Errors
     /// When the run has no such column; the advice lists near names.
     pub fn of_run(run: &Run, x: Option<&str>, names: &[String]) -> Result<Plot, Diagnostic> {
-        let find = |name: &str| run.find(name).ok_or_else(|| unknown_column(run, name));
-        let x = x.map_or(Ok(0), find)?;
+        let x = x.map_or(Ok(0), |name| run.resolve(name))?;
         let x_column = run
             .columns
             .get(x)
-            .ok_or_else(|| unknown_column(run, "time"))?;
+            .ok_or_else(|| run.unknown_column("time"))?;
         let chosen = match names {
             [] => run
                 .table_columns()
@@ -65,7 +64,7 @@ impl Plot {
                 .collect(),
             names => names
                 .iter()
-                .map(|n| find(n))
+                .map(|n| run.resolve(n))
                 .collect::<Result<Vec<_>, _>>()?,
         };
         let rows: Vec<usize> = run.table_rows().collect();
@@ -254,29 +253,6 @@ pub fn with_unit(name: &str, unit: &str) -> String {
 /// Returns the error for a plot without a finite value.
 pub(super) fn nothing_to_show() -> Diagnostic {
     Diagnostic::error("empty_plot", "there is no finite value to show")
-}
-
-/// Returns the error for a column that a run does not have; the advice lists near names, or all.
-pub fn unknown_column(run: &Run, name: &str) -> Diagnostic {
-    let names: Vec<&str> = run.columns.iter().map(|c| c.name.as_str()).collect();
-    const MOST_NAMES: usize = 12;
-    let component = |column: &&str| {
-        let last = column.rsplit_once('.').map(|(_, last)| last);
-        let wanted = name.rsplit_once('.').map_or(name, |(_, last)| last);
-        last.is_some_and(|last| last.eq_ignore_ascii_case(wanted.trim()))
-    };
-    let mut near = near_names(name, names.iter().copied());
-    if near.is_empty() {
-        // another element, or none, but this component
-        near.extend(names.iter().copied().filter(component).take(3));
-    }
-    let first = names[..names.len().min(MOST_NAMES)].join("  ");
-    let advice = match (near.is_empty(), names.len()) {
-        (false, _) => format!("did you mean {}?", near.join(" or ")),
-        (true, n) if n > MOST_NAMES => format!("columns: {first}  … ({n} in all)"),
-        (true, _) => format!("columns: {first}"),
-    };
-    Diagnostic::error("unknown_column", format!("there is no column `{name}`")).help(advice)
 }
 
 /// Splits a curve into pieces without gaps, thinned to the resolution of a picture with this many

@@ -6,7 +6,7 @@
 
 use super::format::{Style, TableText};
 use super::number::push_digits;
-use super::{Column, Kind, Run, Sequence, Units, malformed, number};
+use super::{Column, Kind, Run, Sequence, Units, malformed, number, whole_lines};
 use crate::diagnostic::Diagnostic;
 use std::ops::Range;
 
@@ -47,9 +47,9 @@ impl TableText for Table {
             let columns = run.table_columns().into_iter();
             columns.filter_map(|i| run.columns.get(i))
         };
-        let mut rows = vec![columns().map(|c| c.name.clone()).collect::<Vec<_>>()];
+        let mut rows = vec![columns().map(|c| safe_name(&c.name)).collect::<Vec<_>>()];
         if self.style.units {
-            rows.push(columns().map(|c| unit_cell(&c.unit)).collect());
+            rows.push(columns().map(|c| safe_name(&unit_cell(&c.unit))).collect());
         }
         if run.has_phases {
             let cells = [PHASE.to_owned(), unit_cell("")];
@@ -93,6 +93,27 @@ impl TableText for Table {
     fn end(&mut self, _run: &Run, _text: &mut Vec<u8>) {}
 }
 
+/// Characters at the beginning of a cell by which a spreadsheet takes it for a formula.
+const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+
+/// Writes a name in a cell that no spreadsheet takes for a formula: behind an apostrophe where it
+/// begins as one, or as one behind apostrophes. A lone `-` is none.
+pub(crate) fn safe_name(name: &str) -> String {
+    let bare = name.trim_start_matches('\'');
+    match bare.starts_with(FORMULA) && name != "-" {
+        true => format!("'{name}"),
+        false => name.to_owned(),
+    }
+}
+
+/// Returns the name that [`safe_name`] has written.
+fn plain_name(cell: String) -> String {
+    match cell.trim_start_matches('\'').starts_with(FORMULA) {
+        true => cell.strip_prefix('\'').map(str::to_owned).unwrap_or(cell),
+        false => cell,
+    }
+}
+
 /// Writes a unit in a cell: never empty, so that no reader takes the row for numbers or for a blank
 /// line.
 fn unit_cell(unit: &str) -> String {
@@ -130,12 +151,13 @@ fn to_text(rows: &[Vec<String>], separator: u8) -> String {
 
 /// Reads a table; a second row that holds no number is the row of units. Cells may be
 /// separated by `;`, numbers then have a decimal comma. Columns behind the first that hold no
-/// number at all are words, and left out.
+/// number at all are words, and left out. A last line without its end is left out and noted.
 ///
 /// # Errors
 /// When a row has more or fewer cells than the first, or a cell among numbers holds none, with the
 /// line.
 pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
+    let (bytes, is_cut) = whole_lines(bytes);
     let decimal_comma = has_decimal_commas(bytes);
     let number = |cell: &str| match decimal_comma {
         true => number(&cell.replace(',', ".")),
@@ -163,13 +185,7 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
             .map(|cell| String::from_utf8_lossy(cell).into_owned())
             .collect();
         if run.columns.is_empty() {
-            run.columns = cells
-                .into_iter()
-                .map(|name| Column {
-                    name,
-                    ..Column::default()
-                })
-                .collect();
+            run.columns = cells.into_iter().map(named).collect();
             continue;
         }
         if cells.len() != run.columns.len() {
@@ -185,7 +201,10 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
         let numbers: Vec<Option<f64>> = cells.iter().map(|cell| number(cell)).collect();
         if run.rows() == 0 && numbers.iter().all(Option::is_none) {
             for (column, unit) in run.columns.iter_mut().zip(cells) {
-                column.unit = if unit == "-" { String::new() } else { unit };
+                column.unit = plain_name(unit);
+                if column.unit == "-" {
+                    column.unit.clear();
+                }
             }
             continue;
         }
@@ -202,13 +221,25 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
     }
     leave_words_out(&mut run, &words)?;
     if run.columns.is_empty() {
-        return Err(malformed(0, "there is no row of names"));
+        let what = "ends before its first row: there is no row of names";
+        return Err(malformed(0, what));
     }
     // a table does not say where its rows come from: they are one sequence
     let (kind, rows) = (Kind::Dynamic, 0..run.rows());
     let name = format!("{}_001", kind.name());
     run.sequences.push(Sequence { name, kind, rows });
+    if is_cut {
+        run.note_cut();
+    }
     Ok(run)
+}
+
+/// Returns a column without values, whose name stands in a cell.
+fn named(cell: String) -> Column {
+    Column {
+        name: plain_name(cell),
+        ..Column::default()
+    }
 }
 
 /// Cells of a column that hold no number.

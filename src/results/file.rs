@@ -1,7 +1,7 @@
 //! Files of results: the extension of the name tells the format.
 
-use super::format::{Format, Reader, Style};
-use super::part_file::{create_beside, unwritable};
+use super::format::{Finished, Format, Reader, Style};
+use super::part_file::{PartFile, create_beside, unwritable};
 use super::{Run, msg};
 use crate::diagnostic::Diagnostic;
 use crate::disk;
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// When the file cannot be read, its format is none of these, or its contents are not of that
 /// format.
 pub fn read(path: &Path) -> Result<Run, Diagnostic> {
-    let file = path.display().to_string();
+    let file = disk::text(&path);
     let in_file = |mut d: Diagnostic| {
         d.file.get_or_insert(file.clone());
         d
@@ -36,31 +36,40 @@ pub fn read(path: &Path) -> Result<Run, Diagnostic> {
     let mut run = if disk::is_folder(path) {
         read_parts(path, &extension, reader)
     } else {
-        contents(path).and_then(|bytes| reader(&text(&extension, whole_lines(path, bytes))))
+        contents(path).and_then(|bytes| reader(&text(&extension, bytes)))
     }
     .map_err(in_file)?;
+    if whole_name(path) != path {
+        run.note_cut();
+    }
+    for doubt in &mut run.record.doubts {
+        doubt.file.get_or_insert_with(|| file.clone());
+    }
     run.find_bars();
     if run.name.is_empty() {
-        run.name = path
-            .file_stem()
-            .map(|s| s.to_string_lossy().into_owned())
-            .unwrap_or_default();
+        run.name = path.file_stem().map(|s| disk::text(&s)).unwrap_or_default();
     }
     Ok(run)
 }
 
-/// Returns the contents of a file of text as UTF-8; of others as they are.
-fn text(extension: &str, bytes: Vec<u8>) -> Vec<u8> {
-    match extension {
-        "parquet" => bytes,
-        _ => as_utf8(bytes),
+/// Returns the contents of a file of text as UTF-8; of others as they are. A character that is cut
+/// off at the end is left out: it would be taken for a sign of another encoding.
+fn text(extension: &str, mut bytes: Vec<u8>) -> Vec<u8> {
+    if extension == "parquet" {
+        return bytes;
     }
+    if let Err(e) = std::str::from_utf8(&bytes)
+        && e.error_len().is_none()
+    {
+        bytes.truncate(e.valid_up_to());
+    }
+    as_utf8(bytes)
 }
 
 fn contents(path: &Path) -> Result<Vec<u8>, Diagnostic> {
-    disk::read(path).map_err(|e| {
+    disk::read_results(path).map_err(|e| {
         let mut d = Diagnostic::error("file_unreadable", format!("cannot be read: {e}"));
-        d.file = Some(path.display().to_string());
+        d.file = Some(disk::text(&path));
         d
     })
 }
@@ -85,15 +94,6 @@ fn read_parts(folder: &Path, extension: &str, reader: Reader) -> Result<Run, Dia
     whole.ok_or_else(|| Diagnostic::error("result_syntax", "there are no parts in this folder"))
 }
 
-/// Returns the contents of a part without a last line that was not completed.
-fn whole_lines(path: &Path, mut bytes: Vec<u8>) -> Vec<u8> {
-    let is_part = extension(path) != extension(&whole_name(path));
-    if let Some(last) = bytes.iter().rposition(|&b| b == b'\n').filter(|_| is_part) {
-        bytes.truncate(last + 1);
-    }
-    bytes
-}
-
 /// Returns the name that a part of a file is to have in the end: `run.csv` for `run.csv.part1`.
 fn whole_name(path: &Path) -> PathBuf {
     let is_part = extension(path)
@@ -112,9 +112,21 @@ fn whole_name(path: &Path) -> PathBuf {
 /// # Errors
 /// When the file cannot be written, or its format is none of these.
 pub fn write(run: &Run, path: &Path, style: Style) -> Result<(), Diagnostic> {
+    let finished = write_beside(run, path, style)?;
+    disk::rename(&finished.part, path).map_err(|e| {
+        // a rest that cannot be removed either adds nothing to say
+        let _ = disk::remove_file(&finished.part);
+        unwritable(path, &e)
+    })
+}
+
+/// Writes a run beside the place of a file, in the format of its name.
+pub(super) fn write_beside(run: &Run, path: &Path, style: Style) -> Result<Finished, Diagnostic> {
     let extension = extension(path);
     if extension == "msg" {
-        return write_text(path, &msg::write(run));
+        let mut part = PartFile::new(path);
+        part.append(msg::write(run).as_bytes())?;
+        return part.finish();
     }
     let sink = Format::row(&extension).and_then(|row| row.sink);
     let sink = sink.ok_or_else(|| {
@@ -124,12 +136,7 @@ pub fn write(run: &Run, path: &Path, style: Style) -> Result<(), Diagnostic> {
     })?;
     let mut sink = sink(style, path);
     sink.rows(run, run.held())?;
-    let finished = sink.finish(run)?;
-    disk::rename(&finished.part, path).map_err(|e| {
-        // a rest that cannot be removed either adds nothing to say
-        let _ = disk::remove_file(&finished.part);
-        unwritable(path, &e)
-    })
+    sink.finish(run)
 }
 
 /// Writes a text to a file, all or nothing.
@@ -160,7 +167,7 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Diagnostic> {
 
 fn extension(path: &Path) -> String {
     path.extension()
-        .map(|e| e.to_string_lossy().to_lowercase())
+        .map(|e| disk::text(&e).to_lowercase())
         .unwrap_or_default()
 }
 

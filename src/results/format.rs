@@ -4,7 +4,7 @@
 //! reads the columns, their names and units from the [`Run`] alone, so a new column is in all of
 //! them.
 
-use super::part_file::{TextSink, WholeSink};
+use super::part_file::TextSink;
 use super::{Run, csv, gra, json, msg_table, req, res};
 use crate::diagnostic::Diagnostic;
 use std::ops::Range;
@@ -73,7 +73,7 @@ pub const FORMATS: &[Row] = &[
         format: Format::Json,
         name: "json",
         read: Some(json::read),
-        sink: Some(|_, path| Box::new(WholeSink::new(json::document, path))),
+        sink: Some(|_, path| Box::new(TextSink::new(json::Rows::default(), path))),
     },
     Row {
         format: Format::Gra,
@@ -159,10 +159,6 @@ pub fn text(table: &mut dyn TableText, run: &Run) -> String {
 /// Rows come in order, each once. Whatever the calls of [`Sink::flush`], the file is the same in
 /// the end.
 pub trait Sink: Send {
-    /// Returns whether the run may drop rows that this file has taken.
-    fn may_release(&self) -> bool {
-        true
-    }
     /// Takes rows, all of which the run holds.
     ///
     /// # Errors

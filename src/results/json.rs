@@ -2,14 +2,17 @@
 //!
 //! Numbers that are not finite become `null`, as JSON has no word for them.
 
+use super::format::TableText;
+use super::number::push_digits;
+use super::output_folder::OutputFolder;
 use super::{
     Accuracy, ChannelAccuracy, Column, Counts, Energy, Jump, Kind, Loads, RankChange, Record, Run,
-    Seconds, Sequence, Simulation, Units, malformed,
+    Seconds, Sequence, Simulation, Units, malformed, no_row,
 };
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::model::ElementKind;
 use serde_json::{Map, Value, json};
-use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Writes the record of a run: status, counts, timings, and one entry per simulation.
 pub fn record(run: &Run) -> Value {
@@ -87,9 +90,13 @@ fn told(r: &Record) -> Vec<Diagnostic> {
     r.doubts.iter().cloned().chain(warned).collect()
 }
 
-/// Adds to a record the names and sizes of the files that were written.
-pub fn with_files(mut record: Value, files: &BTreeMap<String, u64>) -> Value {
-    record["files"] = json!(files);
+/// Adds to a record the names and sizes of the files that were written, and of those of the run
+/// before that are kept.
+pub fn with_files(mut record: Value, folder: &OutputFolder) -> Value {
+    record["files"] = json!(folder.written());
+    if !folder.kept_own().is_empty() {
+        record["kept"] = json!(folder.kept_own());
+    }
     record
 }
 
@@ -208,23 +215,109 @@ pub fn table(run: &Run) -> Value {
     json!({ "name": run.name, "title": run.title, "columns": columns.collect::<Vec<_>>() })
 }
 
-/// Writes a run as one document: its table, and which rows belong to which simulation.
-pub fn document(run: &Run) -> String {
-    let mut document = table(run);
-    document["sequences"] = (run.sequences.iter())
-        .map(|s| json!({ "name": s.name, "kind": s.kind.name(), "first_row": s.rows.start, "rows": s.rows.len() }))
-        .collect::<Vec<_>>()
-        .into();
-    text(&document)
+/// A document that is being written: names and units of the columns, a line for each row, and which
+/// rows belong to which simulation.
+///
+/// ```text
+/// {
+/// "name": "run", "title": "",
+/// "columns": [
+/// {"name": "time", "unit": "sec"},
+/// {"name": "x", "unit": "mm"}
+/// ],
+/// "rows": [
+/// [0,1.5],
+/// [0.1,null]
+/// ],
+/// "sequences": [{"first_row": 0, "kind": "dynamic", "name": "dynamic_001", "rows": 2}]
+/// }
+/// ```
+#[derive(Debug, Default)]
+pub struct Rows {
+    has_rows: bool,
 }
 
-/// Reads the table of a document that [`document`] has written.
+/// The line that the rows of a document begin after.
+const ROWS: &str = "\"rows\": [\n";
+
+impl TableText for Rows {
+    fn begin(&mut self, run: &Run, text: &mut Vec<u8>) {
+        let columns = run.table_columns().into_iter();
+        let columns: Vec<String> = columns
+            .filter_map(|i| run.columns.get(i))
+            .map(|c| match c.bar_of.and_then(|of| run.columns.get(of)) {
+                Some(of) => json!({ "name": c.name, "unit": c.unit, "bar_of": of.name }),
+                None => json!({ "name": c.name, "unit": c.unit }),
+            })
+            .map(|head| head.to_string())
+            .collect();
+        let (name, title) = (json!(run.name), json!(run.title));
+        let columns = columns.join(",\n");
+        let head = format!(
+            "{{\n\"name\": {name}, \"title\": {title},\n\"columns\": [\n{columns}\n],\n{ROWS}"
+        );
+        text.extend_from_slice(head.as_bytes());
+    }
+
+    fn rows(&mut self, run: &Run, rows: Range<usize>, text: &mut Vec<u8>) {
+        let columns = run.table_columns().into_iter();
+        let columns: Vec<&Column> = columns.filter_map(|i| run.columns.get(i)).collect();
+        for place in run.table_places(rows) {
+            // the line of the row before ends here, where it is known that another follows
+            if std::mem::replace(&mut self.has_rows, true) {
+                text.extend_from_slice(b",\n");
+            }
+            text.push(b'[');
+            for (i, column) in columns.iter().enumerate() {
+                if i > 0 {
+                    text.push(b',');
+                }
+                match column.at(place) {
+                    x if x.is_finite() => push_digits(x, text),
+                    _ => text.extend_from_slice(b"null"),
+                }
+            }
+            text.push(b']');
+        }
+    }
+
+    fn end(&mut self, run: &Run, text: &mut Vec<u8>) {
+        let sequences: Value = (run.sequences.iter())
+            .map(|s| json!({ "name": s.name, "kind": s.kind.name(), "first_row": s.rows.start, "rows": s.rows.len() }))
+            .collect();
+        let line = if self.has_rows { "\n" } else { "" };
+        let end = format!("{line}],\n\"sequences\": {sequences}\n}}\n");
+        text.extend_from_slice(end.as_bytes());
+    }
+}
+
+/// Returns a document whose rows end with the last whole one; `None`: it is not cut off within or
+/// behind its rows.
+fn mended(text: &str) -> Option<String> {
+    let begin = text.find(ROWS)? + ROWS.len();
+    let (head, rows) = text.split_at(begin);
+    // a row is whole with its bracket: numbers have none
+    let rows = rows.find("\n]").map_or(rows, |end| &rows[..end]);
+    let end = rows.rfind(']').map_or(0, |end| end + 1);
+    Some(format!("{head}{}]}}", &rows[..end]))
+}
+
+/// Reads the table of a document that [`Rows`] has written, or of one whose columns hold their
+/// values; of one that is cut off within its rows the whole ones.
 ///
 /// # Errors
 /// When it is no such document, or its columns differ in length.
 pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
-    let value: Value = serde_json::from_slice(bytes)
-        .map_err(|e| malformed(e.line(), format!("this is no JSON: {e}")))?;
+    let no_json = |e: &serde_json::Error| malformed(e.line(), format!("this is no JSON: {e}"));
+    let (value, is_cut) = match serde_json::from_slice::<Value>(bytes) {
+        Ok(value) => (value, false),
+        Err(e) if e.is_eof() => {
+            let text = String::from_utf8_lossy(bytes);
+            let whole = mended(&text).and_then(|text| serde_json::from_str(&text).ok());
+            (whole.ok_or_else(|| no_row(no_json(&e), 0))?, true)
+        }
+        Err(e) => return Err(no_json(&e)),
+    };
     let Some(columns) = value["columns"].as_array() else {
         let what = "there is no \"columns\"; the record of a run has no table";
         return Err(malformed(0, what)
@@ -235,11 +328,21 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
         title: value["title"].as_str().unwrap_or_default().to_owned(),
         ..Run::default()
     };
+    let by_rows = value["rows"].as_array();
     run.columns = (columns.iter().enumerate())
         .map(|(k, c)| {
-            column(c).ok_or_else(|| malformed(0, format!("column {} is no list of numbers", k + 1)))
+            column(c, by_rows.is_some())
+                .ok_or_else(|| malformed(0, format!("column {} is no list of numbers", k + 1)))
         })
         .collect::<Result<_, _>>()?;
+    for (k, row) in by_rows.into_iter().flatten().enumerate() {
+        let numbers = numbers(row).filter(|row| row.len() == run.columns.len());
+        let what = || format!("row {} is no list of a number for each column", k + 1);
+        let numbers = numbers.ok_or_else(|| malformed(0, what()))?;
+        for (column, x) in run.columns.iter_mut().zip(numbers) {
+            column.values.push(x);
+        }
+    }
     let rows = run.rows();
     if run.columns.iter().any(|c| c.values.len() != rows) {
         return Err(malformed(0, "the columns differ in length"));
@@ -247,20 +350,27 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
     let (kind, rows) = (Kind::Dynamic, 0..rows);
     let name = format!("{}_001", kind.name());
     run.sequences.push(Sequence { name, kind, rows });
+    if is_cut {
+        run.note_cut();
+    }
     Ok(run)
 }
 
-/// Reads a column; `null` is a value that is not finite.
-fn column(value: &Value) -> Option<Column> {
+/// Reads a list of numbers; `null` is a value that is not finite.
+fn numbers(value: &Value) -> Option<Vec<f64>> {
     let number = |x: &Value| x.as_f64().or_else(|| x.is_null().then_some(f64::NAN));
+    value.as_array()?.iter().map(number).collect()
+}
+
+/// Reads a column, whose values may stand in rows.
+fn column(value: &Value, by_rows: bool) -> Option<Column> {
     Some(Column {
         name: value["name"].as_str()?.to_owned(),
         unit: value["unit"].as_str().unwrap_or_default().to_owned(),
-        values: value["values"]
-            .as_array()?
-            .iter()
-            .map(number)
-            .collect::<Option<_>>()?,
+        values: match by_rows {
+            true => Vec::new(),
+            false => numbers(&value["values"])?,
+        },
         bar_of: None,
     })
 }
@@ -309,7 +419,8 @@ mod tests {
         run.push(&[0.0, 0.1 + 0.2]);
         run.push(&[1.0, f64::NAN]);
         run.end();
-        let back = read(document(&run).as_bytes()).unwrap();
+        let document = crate::results::format::text(&mut Rows::default(), &run);
+        let back = read(document.as_bytes()).unwrap();
         assert_eq!(
             (&back.columns[1].unit, back.columns[1].values[0]),
             (&"mm".to_owned(), 0.1 + 0.2)

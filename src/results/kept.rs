@@ -7,6 +7,7 @@ use super::format::Format;
 use super::output_folder::{BEING_WRITTEN, listed};
 use super::part_file::unwritable;
 use super::write_text;
+use super::writing::is_kept;
 use crate::diagnostic::{Diagnostic, near_names};
 use crate::disk;
 use serde_json::Value;
@@ -57,7 +58,7 @@ pub struct ClaimedFile {
 /// When the folder cannot be read.
 pub fn runs_in(folder: &Path) -> Result<Vec<KeptRun>, Diagnostic> {
     let unreadable = |e: std::io::Error| {
-        let what = format!("{}: cannot be read: {e}", folder.display());
+        let what = format!("{}: cannot be read: {e}", disk::text(&folder));
         Diagnostic::error("file_unreadable", what)
     };
     let mut found = records_in(folder).map_err(unreadable)?;
@@ -78,19 +79,44 @@ fn records_in(folder: &Path) -> std::io::Result<Vec<KeptRun>> {
     Ok(names.filter(is_json).filter_map(|p| read(&p)).collect())
 }
 
-/// Reads a record; `None`: the file is none.
-fn read(path: &Path) -> Option<KeptRun> {
-    let record: Value = serde_json::from_slice(&disk::read(path).ok()?).ok()?;
+/// Reads the contents of a record; `None`: the file is none.
+fn record(path: &Path) -> Option<Value> {
+    let record: Value = serde_json::from_slice(&disk::read_own(path).ok()?).ok()?;
     let is_record = record["versions"]["cognate"].is_string() && record["files"].is_object();
-    if !is_record {
-        return None;
-    }
-    let own = path.file_name()?.to_string_lossy().into_owned();
+    is_record.then_some(record)
+}
+
+/// Returns whether a file is a record, or one that has made way for another.
+pub(super) fn is_record(path: &Path) -> bool {
+    let name = disk::text(path.file_name().unwrap_or_default());
+    let before = name.rsplit_once('~').filter(|_| is_kept(&name));
+    before.map_or(&*name, |(name, _)| name).ends_with(".json") && record(path).is_some()
+}
+
+/// Returns whether a file is a record, or a run in its folder claims it as it is.
+pub(super) fn is_claimed(path: &Path) -> bool {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    let name = path.file_name().unwrap_or_default();
+    let is_it = |file: ClaimedFile| {
+        let same = file.path.file_name() == Some(name) && file.path.parent() == Some(folder);
+        same && file.is_own
+    };
+    let claims = |run: KeptRun| run.files().into_iter().any(is_it);
+    is_record(path) || records_in(folder).is_ok_and(|runs| runs.into_iter().any(claims))
+}
+
+/// Reads a run; `None`: the file is no record.
+fn read(path: &Path) -> Option<KeptRun> {
+    let record = record(path)?;
+    let own = disk::text(path.file_name()?);
     let mut claims = listed(path, &own);
     claims.remove(&own);
     Some(KeptRun {
         folder: path.parent()?.to_owned(),
-        name: path.file_stem()?.to_string_lossy().into_owned(),
+        name: disk::text(path.file_stem()?),
         record,
         claims,
     })
@@ -113,12 +139,12 @@ pub fn find(named: &Path) -> Result<KeptRun, Diagnostic> {
     if let Some(run) = beside.filter(is_of) {
         return Ok(run);
     }
-    let what = format!("there is no run {}", named.display());
+    let what = format!("there is no run {}", disk::text(&named));
     let said = Diagnostic::error("unknown_run", what);
     let folder = named.parent().filter(|f| !f.as_os_str().is_empty());
     let known = runs_in(folder.unwrap_or(Path::new("."))).unwrap_or_default();
     let known: Vec<String> = known.iter().map(KeptRun::place).collect();
-    let wanted = named.to_string_lossy();
+    let wanted = disk::text(&named);
     let near = near_names(&wanted, known.iter().map(String::as_str));
     Err(match (near.is_empty(), known.is_empty()) {
         (false, _) => said.help(format!("did you mean {}?", near.join(" or "))),
@@ -141,12 +167,12 @@ impl KeptRun {
     /// Returns its name with its folder, by which [`find`] finds it.
     pub fn place(&self) -> String {
         let folder = self.folder.strip_prefix(".").unwrap_or(&self.folder);
-        folder.join(&self.name).display().to_string()
+        disk::text(&folder.join(disk::path(&self.name)))
     }
 
     /// Returns the place of its record.
     pub fn record_file(&self) -> PathBuf {
-        self.folder.join(format!("{}.json", self.name))
+        self.folder.join(disk::path(format!("{}.json", self.name)))
     }
 
     /// Returns the state of the run.
@@ -158,12 +184,13 @@ impl KeptRun {
         }
     }
 
-    /// Returns the parts of a run that is not complete, with their sizes in bytes: rows so far,
-    /// each to be read by its name; of Parquet a folder.
+    /// Returns the parts of its files, with their sizes in bytes: rows so far of a run that goes
+    /// on, or rows that one has left which was ended from outside; each to be read by its name; of
+    /// Parquet a folder.
     pub fn parts(&self) -> Vec<(PathBuf, u64)> {
         let own = format!("{}.", self.name);
         let is_part = |path: &Path| {
-            let name = path.file_name().map(|name| name.to_string_lossy());
+            let name = path.file_name().map(disk::text);
             let rest = name.as_ref().and_then(|name| name.strip_prefix(&own));
             rest.and_then(|rest| rest.rsplit_once(".part"))
                 .is_some_and(|(table, number)| {
@@ -179,14 +206,11 @@ impl KeptRun {
             }
             false => disk::metadata(path).map_or(0, |about| about.len()),
         };
-        let mut all: Vec<(PathBuf, u64)> = match self.state() {
-            State::Complete => Vec::new(),
-            State::BeingWritten | State::CutOff => entries(&self.folder)
-                .map(|entry| self.folder.join(entry.file_name()))
-                .filter(|path| is_part(path))
-                .map(|path| (path.clone(), bytes(&path)))
-                .collect(),
-        };
+        let mut all: Vec<(PathBuf, u64)> = entries(&self.folder)
+            .map(|entry| self.folder.join(entry.file_name()))
+            .filter(|path| is_part(path))
+            .map(|path| (path.clone(), bytes(&path)))
+            .collect();
         all.sort();
         all
     }
@@ -211,7 +235,7 @@ impl KeptRun {
         let root = self.root();
         let file = |(name, sizes): (&String, &Vec<u64>)| {
             let inside = |c: Component| matches!(c, Component::Normal(_));
-            let path = root.join(name);
+            let path = root.join(disk::path(name));
             let about = path.symlink_metadata().ok();
             let bytes = about.as_ref().map(disk::Metadata::len);
             let is_file = about.is_some_and(|a| a.is_file());
@@ -243,7 +267,8 @@ impl KeptRun {
     /// the others.
     pub fn delete(&self) -> Result<Vec<PathBuf>, Diagnostic> {
         self.is_at_rest()?;
-        for (part, _) in self.parts() {
+        let left = self.parts().into_iter().map(|(part, _)| part);
+        for part in left.filter(|part| !disk::is_held(part)) {
             let removed = match disk::is_folder(&part) {
                 true => disk::remove_dir_all(&part),
                 false => disk::remove_file(&part),
@@ -279,19 +304,27 @@ impl KeptRun {
             is_named_after.then(|| new.to_string_lossy().into_owned())
         };
         let (own, others): (Vec<_>, Vec<_>) = self.files().into_iter().partition(|f| f.is_own);
-        let new_record = self.folder.join(format!("{name}.json"));
+        let new_record = self.folder.join(disk::path(format!("{name}.json")));
         let moves: Vec<(PathBuf, PathBuf)> = (own.iter())
-            .filter_map(|f| Some((f.path.clone(), self.root().join(renamed(&f.name)?))))
+            .filter_map(|f| {
+                Some((
+                    f.path.clone(),
+                    self.root().join(disk::path(renamed(&f.name)?)),
+                ))
+            })
             .collect();
         let targets = moves.iter().map(|(_, to)| to).chain([&new_record]);
         let mut there = targets.filter(|to| to.symlink_metadata().is_ok());
         if let Some(there) = there.next() {
-            let what = format!("{} is there already", there.display());
+            let what = format!("{} is there already", disk::text(&there));
             let said = Diagnostic::error("run_exists", what);
             return Err(said.help("choose another name, or delete that run"));
         }
         let mut record = self.record.clone();
-        if let Some(files) = record["files"].as_object_mut() {
+        for list in ["files", "kept"] {
+            let Some(files) = record.get_mut(list).and_then(Value::as_object_mut) else {
+                continue;
+            };
             // a file that somebody has changed is no longer one of the run
             files.retain(|claimed, _| own.iter().any(|f| f.name == *claimed));
             let old = std::mem::take(files);

@@ -7,6 +7,7 @@
 
 pub mod comparison;
 pub mod csv;
+mod cut;
 mod digest;
 mod file;
 pub mod format;
@@ -16,6 +17,7 @@ pub mod kept;
 mod log;
 pub mod msg;
 pub mod msg_table;
+mod named;
 mod number;
 pub mod output_folder;
 #[cfg(feature = "parquet")]
@@ -27,6 +29,8 @@ pub mod res;
 mod run;
 mod seconds;
 mod units;
+mod words;
+mod writing;
 
 pub use digest::digest;
 pub use file::{read, write, write_bytes, write_text};
@@ -36,8 +40,11 @@ pub use record::{
     Accuracy, ChannelAccuracy, Counts, Energy, Jump, Loads, Quantity, RankChange, Record,
     RowChange, Simulation, Status, Warning,
 };
-pub use run::{Column, Component, Entity, Kind, Requested, Run, Sequence};
+pub use run::{Column, Component, Entity, Kind, Requested, Run, Sequence, Switched};
 pub use seconds::Seconds;
 pub use units::{Units, component_unit};
+pub use words::word_of;
+pub use writing::Writing;
 
+use cut::{no_row, whole_lines};
 use number::{malformed, number};

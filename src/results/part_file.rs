@@ -46,7 +46,7 @@ impl PartFile {
         Err(match &self.part {
             Some((part, _)) if self.bytes > 0 => d.help(format!(
                 "what has been written until then stands in {}",
-                part.display()
+                disk::text(&part)
             )),
             _ => d,
         })
@@ -108,7 +108,11 @@ pub fn create_beside(path: &Path) -> std::io::Result<(PathBuf, File)> {
     loop {
         let part = beside(path, number);
         match File::create_new(&part) {
-            Ok(file) => return Ok((part, file)),
+            Ok(file) => {
+                // others see by it that somebody writes; where there are no locks, nobody does
+                let _ = file.lock_shared();
+                return Ok((part, file));
+            }
             // a file of that name is somebody's
             Err(e) if e.kind() == ErrorKind::AlreadyExists => number += 1,
             Err(e) => return Err(e),
@@ -126,7 +130,7 @@ pub fn beside(path: &Path, number: u32) -> PathBuf {
 /// Makes an error of a file that cannot be written.
 pub fn unwritable(path: &Path, e: &std::io::Error) -> Diagnostic {
     let mut d = Diagnostic::error(Cause::FileUnwritable, format!("cannot be written: {e}"));
-    d.file = Some(path.display().to_string());
+    d.file = Some(disk::text(&path));
     d
 }
 
@@ -188,36 +192,6 @@ impl<T: TableText> Sink for TextSink<T> {
         self.begin(run);
         self.table.end(run, &mut self.text);
         self.write()?;
-        self.file.finish()
-    }
-}
-
-/// A file that is written when its run is over, from rows that the run has kept.
-pub struct WholeSink {
-    document: fn(&Run) -> String,
-    file: PartFile,
-}
-
-impl WholeSink {
-    /// Prepares the file of a document.
-    pub fn new(document: fn(&Run) -> String, place: &Path) -> Self {
-        let file = PartFile::new(place);
-        Self { document, file }
-    }
-}
-
-impl Sink for WholeSink {
-    fn may_release(&self) -> bool {
-        false
-    }
-    fn rows(&mut self, _run: &Run, _rows: Range<usize>) -> Result<(), Diagnostic> {
-        Ok(())
-    }
-    fn flush(&mut self, _run: &Run) -> Result<(), Diagnostic> {
-        Ok(())
-    }
-    fn finish(&mut self, run: &Run) -> Result<Finished, Diagnostic> {
-        self.file.append((self.document)(run).as_bytes())?;
         self.file.finish()
     }
 }

@@ -209,8 +209,8 @@ pub struct Record {
     pub error: Option<f64>,
     /// where the time went
     pub seconds: Seconds,
-    /// processor time of solving, mean of the repeats, in s; `None`: it was solved once
-    pub repeated_seconds: Option<f64>,
+    /// processor time of solving, by the thread that solves, in s; the mean where it is repeated
+    pub solve_processor_seconds: f64,
     /// how often it was solved to time it
     pub repeats: u32,
     /// totals of all simulations
@@ -250,7 +250,7 @@ impl Record {
             method,
             error,
             seconds,
-            repeated_seconds,
+            solve_processor_seconds,
             repeats,
             counts,
             freedom,
@@ -273,7 +273,8 @@ impl Record {
         self.method.clone_from(method);
         self.error.clone_from(error);
         self.seconds.clone_from(seconds);
-        self.repeated_seconds.clone_from(repeated_seconds);
+        self.solve_processor_seconds
+            .clone_from(solve_processor_seconds);
         self.repeats.clone_from(repeats);
         self.counts.clone_from(counts);
         self.freedom.clone_from(freedom);
@@ -422,8 +423,10 @@ pub struct Simulation {
     pub stop_code: &'static str,
     /// the same in a sentence
     pub stop_reason: String,
-    /// solving alone, in s
+    /// solving alone, in s; the median where it is repeated
     pub solve_seconds: f64,
+    /// processor time of it, in s; the mean where it is repeated
+    pub solve_processor_seconds: f64,
     /// what the method did
     pub counts: Counts,
     /// names of the worst rows or elements where it stopped
@@ -443,6 +446,7 @@ impl Simulation {
             stop_code: "",
             stop_reason: String::new(),
             solve_seconds: 0.0,
+            solve_processor_seconds: 0.0,
             counts: Counts::default(),
             worst: Vec::new(),
         }

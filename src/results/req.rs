@@ -11,6 +11,7 @@
 use super::format::TableText;
 use super::gra::{NO_DATE, code_of_units, columns, put_line, units_of_code};
 use super::{Component, Entity, Kind, Requested, Run, component_unit, malformed};
+use super::{no_row, whole_lines};
 use crate::diagnostic::Diagnostic;
 use crate::model::ElementKind;
 use std::ops::Range;
@@ -30,13 +31,40 @@ const NAMES: [[&str; 8]; 5] = [
     ["F2", "F3", "F4", "F6", "F7", "F8", "", ""],
 ];
 
-/// Reads the components of requests.
+/// Reads the components of requests; of a file that was cut up to its last whole output.
 ///
 /// # Errors
 /// When the contents are not of this format, with the line.
 pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
-    let text = String::from_utf8_lossy(bytes);
+    let (whole, mut is_cut) = whole_lines(bytes);
+    let text = String::from_utf8_lossy(whole);
     let lines: Vec<&str> = text.lines().collect();
+    let mut run = head(&lines).map_err(|d| no_row(d, lines.len()))?;
+    let n = run.requests.len();
+    run.begin(Kind::Dynamic);
+    let mut at = 3 + n;
+    while at < lines.len() {
+        if lines[at].trim().is_empty() {
+            at += 1;
+            continue;
+        }
+        if lines.len() - at <= n {
+            is_cut = true;
+            break;
+        }
+        let row = row(&lines, at, &run.requests)?;
+        run.push(&row);
+        at += n + 1;
+    }
+    run.end();
+    if is_cut {
+        run.note_cut();
+    }
+    Ok(run)
+}
+
+/// Reads what stands before the first output; returns a run without rows.
+fn head(lines: &[&str]) -> Result<Run, Diagnostic> {
     let &[identification, title, counts] = lines
         .first_chunk::<3>()
         .ok_or_else(|| malformed(0, "too short for a .req file"))?;
@@ -46,8 +74,10 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
     }
     let mut words = counts.split_whitespace();
     let n = words.next().and_then(|w| w.parse::<usize>().ok());
-    let n = n.filter(|&n| n < lines.len());
     let n = n.ok_or_else(|| malformed(3, "the number of requests should stand here"))?;
+    if n > lines.len() - 3 {
+        return Err(malformed(0, "fewer lines than requests"));
+    }
     let units = units_of_code(words.next().unwrap_or_default());
     let mut run = Run::new("", title.trim(), units);
     for (line, number) in lines.iter().zip(1..).skip(3).take(n) {
@@ -60,18 +90,6 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
         })?;
         add_request(&mut run, request);
     }
-    run.begin(Kind::Dynamic);
-    let mut at = 3 + n;
-    while at < lines.len() {
-        if lines[at].trim().is_empty() {
-            at += 1;
-            continue;
-        }
-        let row = row(&lines, at, &run.requests)?;
-        run.push(&row);
-        at += n + 1;
-    }
-    run.end();
     Ok(run)
 }
 
@@ -134,9 +152,7 @@ fn row(lines: &[&str], at: usize, requests: &[Requested]) -> Result<Vec<f64>, Di
     let time = columns(lines[at]).filter(|n| n.len() == 1);
     let what = "a time should stand here, alone in its line";
     let mut row = time.ok_or_else(|| malformed(at + 1, what))?;
-    for (request, k) in requests.iter().zip(at + 1..) {
-        let line = lines.get(k);
-        let line = line.ok_or_else(|| malformed(lines.len(), "the last output is not complete"))?;
+    for ((request, line), k) in requests.iter().zip(&lines[at + 1..]).zip(at + 1..) {
         let numbers = columns(line).and_then(|n| <[f64; 6]>::try_from(n).ok());
         let what = "six numbers, the components of a request, should stand here";
         let own = numbers.ok_or_else(|| malformed(k + 1, what))?;
@@ -220,7 +236,7 @@ mod tests {
         );
         // cut off
         let short = text.trim_end().rsplit_once('\n').unwrap().0;
-        assert_eq!(read(short.as_bytes()).unwrap_err().code, "result_syntax");
+        assert_eq!(read(short.as_bytes()).unwrap().rows(), 1);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use super::{Event, Record, Units};
 use crate::model::{ElementId, RequestKind};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// The results of a run.
@@ -24,6 +25,8 @@ pub struct Run {
     pub table: Vec<usize>,
     /// which rows belong to which simulation
     pub sequences: Vec<Sequence>,
+    /// elements that were switched off, and from which row on; files of results do not hold it
+    pub switched: Vec<Switched>,
     /// status, counts and timings
     pub record: Record,
     /// what happened, in order, as the `.msg` file tells it
@@ -163,6 +166,15 @@ impl Kind {
     }
 }
 
+/// The elements that are switched off from a row on, until the next entry.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Switched {
+    /// the first row
+    pub row: usize,
+    /// the elements that do not act
+    pub inactive: BTreeSet<ElementId>,
+}
+
 /// Consecutive rows that one simulation produced.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sequence {
@@ -288,6 +300,14 @@ impl Run {
             rows,
         });
     }
+    /// Notes the elements that are switched off in the rows that follow.
+    pub(crate) fn switch(&mut self, inactive: &BTreeSet<ElementId>) {
+        let before = self.switched.last().map(|s| &s.inactive);
+        if before.map_or(!inactive.is_empty(), |before| before != inactive) {
+            let (row, inactive) = (self.rows(), inactive.clone());
+            self.switched.push(Switched { row, inactive });
+        }
+    }
     /// Ends the last sequence after the last row.
     pub fn end(&mut self) {
         let rows = self.rows();
@@ -298,6 +318,7 @@ impl Run {
     /// Keeps the rows of some sequences and drops all others.
     pub fn keep_sequences(&mut self, keep: impl Fn(&Sequence) -> bool) {
         self.sequences.retain(keep);
+        self.switched.clear();
         for column in &mut self.columns {
             let kept = self
                 .sequences
@@ -315,6 +336,7 @@ impl Run {
     /// Drops the second, fourth, sixth … row of a run that holds all its rows, and its sequences.
     pub fn keep_every_second(&mut self) {
         self.sequences.clear();
+        self.switched.clear();
         for column in &mut self.columns {
             column.values = column.values.iter().step_by(2).copied().collect();
         }
@@ -353,6 +375,7 @@ impl Run {
         self.sequences.pop();
         catch_up(&mut self.sequences, &later.sequences);
         catch_up(&mut self.log, &later.log);
+        self.switched.clone_from(&later.switched);
         self.record.catch_up(&later.record);
     }
     /// Returns whether a later state of the same run has the rows of this one as its first: no
@@ -428,44 +451,6 @@ impl Run {
         let begun = self.sequences.iter().rev();
         let mut begun = begun.skip_while(|s| s.rows.start > row);
         begun.next().map(|s| s.kind)
-    }
-    /// Returns the index of the column with this name, without regard to blanks and case. An
-    /// element may be named as it is elsewhere: `CONTACT/1.FX` and `1-CONTACT1.FX` are
-    /// `CONTACT_1.FX`, or that of the name that the dataset gives it.
-    pub fn find(&self, name: &str) -> Option<usize> {
-        let found = self.find_named(name);
-        found.or_else(|| self.find_named(&self.name_of_column(name)?))
-    }
-    /// Returns the column name for a component of an element: `hinge_XFORM.X` for `PART/2_XFORM.X`.
-    fn name_of_column(&self, text: &str) -> Option<String> {
-        let (set, component) = text.rsplit_once('.')?;
-        let ends = set.match_indices('_').map(|(at, _)| at);
-        let ends = ends.chain([set.len()]).rev();
-        let element = |end: usize| Some((set[..end].parse::<ElementId>().ok()?, &set[end..]));
-        let (id, more) = ends.into_iter().find_map(element)?;
-        let number = u64::from(id.number);
-        let is_own = |e: &&Entity| e.id == number && e.kind.eq_ignore_ascii_case(id.kind.keyword());
-        let named = self.entities.iter().find(is_own).map(|e| e.entity.clone());
-        let own = named.unwrap_or_else(|| format!("{}_{number}", id.kind));
-        Some(format!("{own}{more}.{component}"))
-    }
-    /// Returns the index of the column of just this name, without regard to blanks and case.
-    fn find_named(&self, name: &str) -> Option<usize> {
-        let plain = |text: &str| {
-            text.chars()
-                .filter(|c| !c.is_whitespace())
-                .flat_map(char::to_lowercase)
-                .collect::<String>()
-        };
-        let exact = self.columns.iter().position(|c| c.name == name);
-        exact.or_else(|| {
-            let wanted = plain(name);
-            self.columns.iter().position(|c| plain(&c.name) == wanted)
-        })
-    }
-    /// Returns the values of the column with this name.
-    pub fn column(&self, name: &str) -> Option<&[f64]> {
-        self.find(name).map(|i| self.columns[i].values.as_slice())
     }
 }
 
@@ -546,7 +531,10 @@ mod tests {
             entity: "hinge".into(),
             kind: "Joint".into(),
             id: 2,
-            components: Vec::new(),
+            components: vec![Component {
+                name: "FX".into(),
+                column: 2,
+            }],
         });
         for (name, column) in [
             ("CONTACT_1.FX", Some(1)),

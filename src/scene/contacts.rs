@@ -7,7 +7,7 @@ use super::forces::{ForceLaw, Touching};
 use super::left_out::Reason;
 use super::tunnelling::ThicknessBound;
 use super::untouchable::{NoPair, Untouchable};
-use crate::diagnostic::{Cause, Diagnostic};
+use crate::diagnostic::{Cause, Diagnostic, counted};
 use crate::model::{Contact, ContactLaw, CoulombFriction, ElementId, ElementKind, Shape};
 use crate::physics::contact::extent::Extent;
 use crate::physics::contact::law::{Coulomb, Law, Normal};
@@ -363,8 +363,8 @@ impl Builder<'_> {
             outside,
         } = shell;
         let mut what = format!(
-            "the convex hull of {file:?} touches, {} corners of {points} points: hollows are filled",
-            corners.len()
+            "the convex hull of {file:?} touches, {} of {points} points: hollows are filled",
+            counted(corners.len(), "corner")
         );
         if *outside > 0.0 {
             what += &format!("; the shell stands out of it by {outside:.3e} at most");

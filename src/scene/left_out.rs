@@ -155,7 +155,7 @@ impl LeftOut {
                 this.leave(id, &Reason::NotSolved);
                 continue;
             }
-            let error = Diagnostic::error(Cause::Unsupported, "is read, but not solved yet");
+            let error = Diagnostic::error(Cause::Unsupported, "is read, but not solved");
             this.told.push(error.element(id).help(format!(
                 "--skip-unsupported {kind} leaves all of its kind out; the results are then those of another model"
             )));

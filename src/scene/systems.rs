@@ -19,6 +19,7 @@ use super::compile::Compiler;
 use super::external_inputs::{ExternalInput, SceneSampler, SceneSensor};
 use super::unknown::{DifferentialId, UnknownId};
 use super::{Entry, Formula, SceneDifferential};
+use crate::diagnostic::counted;
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program, Sym};
 use crate::model::{
@@ -281,7 +282,10 @@ impl Builder<'_> {
         }
         if array.size.is_some_and(|n| n != entries.len()) {
             let (given, n) = (array.size.unwrap_or(0), entries.len());
-            return Err(format!("{name} has SIZE = {given}, but {n} entries"));
+            return Err(format!(
+                "{name} has SIZE = {given}, but {}",
+                counted(n, "entry")
+            ));
         }
         if self.scene.arrays.insert(id, entries).is_some() {
             return Err(format!("{name} is already filled by another element"));
@@ -308,8 +312,9 @@ impl Builder<'_> {
         match self.model.arrays.get(&ic).map(|a| &a.kind) {
             Some(ArrayKind::Ic(numbers)) if numbers.len() == n => Ok(numbers.clone()),
             Some(ArrayKind::Ic(numbers)) => Err(format!(
-                "{name} gives {} initial values for {n} states",
-                numbers.len()
+                "{name} gives {} for {}",
+                counted(numbers.len(), "initial value"),
+                counted(n, "state")
             )),
             Some(_) => Err(format!("{name} should be of the kind IC")),
             None => Err(format!("{name} does not exist")),

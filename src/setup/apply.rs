@@ -9,6 +9,7 @@ use crate::expr::Expr;
 use crate::expr::ast::Dialect;
 use crate::model::{COMPONENTS, Driven, ElementId, ElementKind, Formula, Level, Model, SplineData};
 use crate::results::Loads;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// The loads that a command asks for.
@@ -164,54 +165,45 @@ fn resolve(
             }
             continue;
         }
-        match load_named(model, &name.text) {
+        match Load::named(model, &name.text) {
             Ok(load) => chosen.push(load),
-            Err(why) => {
-                let mut d = match is_in_file {
-                    true => setup.mistake(name.span, "unknown_load", why),
-                    false => Diagnostic::error("unknown_load", why),
-                };
-                let cases = setup.cases.iter().map(|c| c.name.text.clone());
-                let loads = loads_of(model).into_iter().map(|load| load.to_string());
-                let known: Vec<String> = cases.chain(loads).collect();
-                let near = near_names(&name.text, known.iter().map(String::as_str));
-                d.help.push(match near.is_empty() {
-                    true => format!("there are {}", known.join(", ")),
-                    false => format!("did you mean {}?", near.join(" or ")),
+            Err(said) => {
+                let d = unknown_load(setup, model, &name.text, said);
+                found.push(match is_in_file {
+                    true => setup.placed(name.span, d),
+                    false => d,
                 });
-                found.push(d);
             }
         }
     }
     chosen
 }
 
-/// Returns the load of a name: as it prints, or the name that the dataset gives it.
-fn load_named(model: &Model, name: &str) -> Result<Load, String> {
+/// Says that a name is neither a load nor a load case, with those that are near.
+fn unknown_load(setup: &Setup, model: &Model, name: &str, said: Diagnostic) -> Diagnostic {
+    if !said.help.is_empty() {
+        return said;
+    }
+    let cases = setup.cases.iter().map(|c| c.name.text.clone());
     let all = loads_of(model);
-    if let Ok(load) = name.parse::<Load>() {
-        return match all.contains(&load) {
-            true => Ok(load),
-            false => Err(format!("the model has no load {load}")),
-        };
-    }
-    let named = all.iter().find(|load| match load {
-        Load::Element(id) => {
-            let element = model.element(*id);
-            element.is_some_and(|e| e.place().name.as_deref() == Some(name))
-        }
-        Load::Gravity | Load::Initial(_) => false,
+    let names = all.iter().filter_map(|load| match load {
+        Load::Element(id) => model.element(*id)?.place().name.clone(),
+        Load::Gravity | Load::Initial(_) => None,
     });
-    match (named, name.parse::<Load>()) {
-        (Some(load), _) => Ok(*load),
-        (None, Err(why)) if name.contains('/') => Err(why),
-        (None, _) => Err(format!("`{name}` is neither a load case nor a load")),
-    }
+    let loads = all.iter().map(ToString::to_string);
+    let known: Vec<String> = cases.chain(loads).collect();
+    let named: Vec<String> = names.collect();
+    let everything = known.iter().chain(&named).map(String::as_str);
+    let near = near_names(name, everything);
+    said.help(match near.is_empty() {
+        true => format!("there are {}", known.join(", ")),
+        false => format!("did you mean {}?", near.join(" or ")),
+    })
 }
 
 /// Gives the loads of a model their functions.
 fn drive(setup: &Setup, model: &mut Model) -> Result<(), Vec<Diagnostic>> {
-    let mut found = Vec::new();
+    let (mut found, mut targets) = (Vec::new(), BTreeSet::new());
     for (target, name) in &setup.driven {
         let Some(function) = setup.function(&name.text) else {
             let what = format!("there is no function `{}` in [functions]", name.text);
@@ -225,8 +217,12 @@ fn drive(setup: &Setup, model: &mut Model) -> Result<(), Vec<Diagnostic>> {
             continue;
         };
         let given = target_of(model, &target.text)
-            .map_err(|why| setup.mistake(target.span, "unknown_load", why))
+            .map_err(|d| setup.placed(target.span, d))
             .and_then(|(id, component)| {
+                if !targets.insert((id, component)) {
+                    let what = format!("{} has a function already", target.text);
+                    return Err(setup.mistake(target.span, "given_twice", what));
+                }
                 let wanted = quantity(model, id, component);
                 let told = function.ordinate;
                 if told != Ordinate::Unsaid && wanted != Ordinate::Unsaid && told != wanted {
@@ -253,23 +249,39 @@ fn drive(setup: &Setup, model: &mut Model) -> Result<(), Vec<Diagnostic>> {
     }
 }
 
-/// Returns the element and the component of a load that a function can give: `MOTION/1`,
-/// `VFORCE/2.FX`.
-fn target_of(model: &Model, text: &str) -> Result<(ElementId, Option<usize>), String> {
-    let (element, component) = match text.split_once('.') {
-        Some((element, component)) => (element, Some(component)),
-        None => (text, None),
+/// Kinds of loads that a function can give.
+const DRIVEN: [ElementKind; 5] = [
+    ElementKind::Motion,
+    ElementKind::Sforce,
+    ElementKind::Vforce,
+    ElementKind::Vtorque,
+    ElementKind::Gforce,
+];
+
+/// Returns the element and the component of a load that a function can give: `MOTION/1`, `motor`,
+/// `VFORCE/2.FX`, `push.FX`.
+///
+/// # Errors
+/// When there is no such load, or several; a component that it does not have, or lacks.
+pub fn target_of(model: &Model, text: &str) -> Result<(ElementId, Option<usize>), Diagnostic> {
+    let wrong = |what: String| Diagnostic::error("unknown_load", what);
+    let told = |d: Diagnostic| Diagnostic {
+        code: "unknown_load",
+        ..d
     };
-    let id: ElementId = element.parse()?;
-    if !model.has(id) {
-        return Err(format!("the model has no load {id}"));
-    }
+    let (id, component) = match (model.find_of(&DRIVEN, text), text.rsplit_once('.')) {
+        (Ok(id), _) => (id, None),
+        (Err(_), Some((element, component))) => {
+            let id = model.find_of(&DRIVEN, element).map_err(told)?;
+            (id, Some(component))
+        }
+        (Err(d), None) => return Err(told(d)),
+    };
     let allowed = match id.kind {
-        ElementKind::Motion | ElementKind::Sforce => 0..0,
         ElementKind::Vforce => 0..3,
         ElementKind::Vtorque => 3..6,
         ElementKind::Gforce => 0..6,
-        kind => return Err(format!("{kind} is not given by a function of yours")),
+        _ => 0..0,
     };
     let place = component.and_then(|c| {
         let is = |name: &&str| name.eq_ignore_ascii_case(c.trim());
@@ -278,12 +290,11 @@ fn target_of(model: &Model, text: &str) -> Result<(ElementId, Option<usize>), St
     match (allowed.is_empty(), component, place) {
         (true, None, _) => Ok((id, None)),
         (false, Some(_), Some(k)) if allowed.contains(&k) => Ok((id, Some(k))),
-        (true, Some(_), _) => Err(format!("{id} has one function: name it {id}")),
+        (true, Some(_), _) => Err(wrong(format!("{id} has one function: name it {id}"))),
         (false, ..) => {
             let names = COMPONENTS[allowed].join(", ");
-            Err(format!(
-                "{id} has components: {id}.FX and so on, of {names}"
-            ))
+            let what = format!("{id} has components: {id}.FX and so on, of {names}");
+            Err(wrong(what))
         }
     }
 }
@@ -347,10 +358,12 @@ fn text_for(
     let text = match &function.shape {
         Shape::Direct(text) => {
             let mut wrong = model.check_expression(&text.text);
-            return match wrong.is_empty() {
-                true => Ok(text.text.clone()),
-                false => Err(within(setup, text, wrong.swap_remove(0))),
-            };
+            if !wrong.is_empty() {
+                return Err(within(setup, text, wrong.swap_remove(0)));
+            }
+            // a model calls elements by their numbers
+            let numbered = model.numbered(&text.text);
+            return Ok(numbered.map_or_else(|_| text.text.clone(), |n| n.text));
         }
         Shape::Expression(text) => Expr::parse_dialect(&text.text, Dialect::Expression)
             .map_err(|e| e.into_first())

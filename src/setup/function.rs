@@ -11,7 +11,7 @@
 //! for s − p has no curvature at its ends.
 
 use super::Named;
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Diagnostic, Span, counted};
 use crate::disk;
 use crate::encoding::as_utf8;
 use crate::expr::Expr;
@@ -88,6 +88,11 @@ impl Ordinate {
         Self::Torque,
     ];
 
+    /// Returns the words of all quantities that can be said.
+    pub fn words() -> [&'static str; 8] {
+        Self::ALL.map(Self::word)
+    }
+
     /// Returns its word in the file.
     pub fn word(self) -> &'static str {
         match self {
@@ -150,7 +155,9 @@ impl UserFunction {
         match &self.shape {
             Shape::Expression(text) => format!("expression {}", text.text),
             Shape::Direct(text) => format!("direct entry {}", text.text),
-            Shape::Points { points, .. } => format!("spline through {} points", points.len()),
+            Shape::Points { points, .. } => {
+                format!("spline through {}", counted(points.len(), "point"))
+            }
         }
     }
 
@@ -279,7 +286,7 @@ pub(super) fn read_formula(file: &Path) -> Result<String, String> {
     });
     let function = bare.map_or(whole.as_str(), |(_, function)| function.trim());
     match function.is_empty() {
-        true => Err(format!("{}: there is no function in it", file.display())),
+        true => Err(format!("{}: there is no function in it", disk::text(&file))),
         false => Ok(function.to_owned()),
     }
 }
@@ -297,19 +304,19 @@ pub(super) fn read_points(file: &Path) -> Result<Vec<[f64; 2]>, String> {
             &[x, y] if cells.len() == 2 => points.push([x, y]),
             _ if points.is_empty() || cells.is_empty() => {}
             _ => {
-                let place = format!("{}:{number}", file.display());
+                let place = format!("{}:{number}", disk::text(&file));
                 return Err(format!("{place}: a time and a value should stand here"));
             }
         }
     }
     match points.is_empty() {
-        true => Err(format!("{}: there are no points in it", file.display())),
+        true => Err(format!("{}: there are no points in it", disk::text(&file))),
         false => Ok(points),
     }
 }
 
 fn contents(file: &Path) -> Result<String, String> {
-    let bytes = disk::read(file).map_err(|e| format!("{}: {e}", file.display()))?;
+    let bytes = disk::read(file).map_err(|e| format!("{}: {e}", disk::text(&file)))?;
     Ok(String::from_utf8_lossy(&as_utf8(bytes)).into_owned())
 }
 

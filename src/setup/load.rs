@@ -1,9 +1,9 @@
 //! Loads of a model: what a load case chooses among. Gravity, motions, forces, contacts and initial
 //! conditions; springs, dampers and the like belong to the mechanism and always act.
 
+use crate::diagnostic::Diagnostic;
 use crate::model::{ElementId, ElementKind, Model};
 use std::fmt;
-use std::str::FromStr;
 
 /// A load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -44,34 +44,91 @@ impl fmt::Display for Load {
     }
 }
 
-impl FromStr for Load {
-    type Err = String;
-
-    /// Reads `gravity`, `MOTION/1`, or `IC:PART/2`.
-    fn from_str(text: &str) -> Result<Self, String> {
+impl Load {
+    /// Returns whether a text is what loads are called whatever the model: `gravity`, `MOTION/1`,
+    /// `IC:PART/2`.
+    pub fn is_written(text: &str) -> bool {
         let text = text.trim();
-        if text.eq_ignore_ascii_case("gravity") {
-            return Ok(Load::Gravity);
-        }
-        if let Some((word, element)) = text.split_once(':')
-            && word.trim().eq_ignore_ascii_case("ic")
-        {
-            let id: ElementId = element.parse()?;
-            return match BEGINNING.contains(&id.kind) {
-                true => Ok(Load::Initial(id)),
-                false => Err(format!("{} has no initial conditions", id.kind)),
-            };
-        }
-        let id: ElementId = text.parse()?;
-        match KINDS.contains(&id.kind) {
-            true => Ok(Load::Element(id)),
-            false => Err(format!(
-                "{} is no load: loads are gravity, {} and initial conditions (IC:PART/2)",
-                id.kind,
-                KINDS.map(ElementKind::keyword).join(", ")
-            )),
+        let element = initial(text).unwrap_or(text);
+        text.eq_ignore_ascii_case("gravity") || element.parse::<ElementId>().is_ok()
+    }
+
+    /// Returns the load of a model that a user calls so, and that acts: `gravity`; a motion, a
+    /// force or a contact by any of its names; `IC:arm`, the initial conditions of a joint, a part
+    /// or a marker.
+    ///
+    /// # Errors
+    /// When the model has no such load, or several of the name.
+    pub fn named(model: &Model, text: &str) -> Result<Self, Diagnostic> {
+        let load = Self::of(model, text)?;
+        match load.acts_in(model) {
+            true => Ok(load),
+            false => {
+                let what = format!("the model has no load {load}");
+                Err(Diagnostic::error("unknown_load", what))
+            }
         }
     }
+
+    /// Returns the load that a user calls so, as [`named`](Self::named) does, whether it acts or
+    /// not.
+    ///
+    /// # Errors
+    /// When the model has no such element, or several of the name.
+    pub fn of(model: &Model, text: &str) -> Result<Self, Diagnostic> {
+        let text = text.trim();
+        let (kinds, element) = match initial(text) {
+            _ if text.eq_ignore_ascii_case("gravity") => (&[][..], ""),
+            Some(element) => (&BEGINNING[..], element),
+            None => (&KINDS[..], text),
+        };
+        let found = match (kinds, initial(text)) {
+            ([], _) => Ok(Load::Gravity),
+            (_, Some(_)) => model.find_of(kinds, element).map(Load::Initial),
+            (_, None) => model.find_of(kinds, element).map(Load::Element),
+        };
+        found.map_err(|d| no_load(model, kinds, (text, element), d))
+    }
+}
+
+/// Says why an element is no load.
+fn no_load(
+    model: &Model,
+    kinds: &[ElementKind],
+    (text, element): (&str, &str),
+    said: Diagnostic,
+) -> Diagnostic {
+    let wrong = |what: String| Diagnostic::error("unknown_load", what);
+    let other = model.find_element(element).ok();
+    match other.filter(|id| !kinds.contains(&id.kind)) {
+        Some(id) if kinds == BEGINNING => wrong(format!("{} has no initial conditions", id.kind)),
+        Some(id) => {
+            let kinds = KINDS.map(ElementKind::keyword).join(", ");
+            let what = format!(
+                "{} is no load: loads are gravity, {kinds} and initial conditions (IC:PART/2)",
+                id.kind
+            );
+            wrong(match element.parse::<ElementId>() {
+                Ok(_) => what,
+                Err(_) => format!("`{text}` is {id}: {what}"),
+            })
+        }
+        None if model.has_name(kinds, element) => Diagnostic {
+            code: "unknown_load",
+            ..said
+        },
+        None if element.parse::<ElementId>().is_ok() => {
+            wrong(format!("the model has no load {text}"))
+        }
+        None => wrong(format!("`{text}` is neither a load case nor a load")),
+    }
+}
+
+/// Returns the element of `IC:PART/2`.
+fn initial(text: &str) -> Option<&str> {
+    let (word, element) = text.split_once(':')?;
+    let is_initial = word.trim().eq_ignore_ascii_case("ic");
+    is_initial.then_some(element.trim())
 }
 
 impl Load {

@@ -22,7 +22,7 @@ mod group;
 mod load;
 mod read;
 
-pub use apply::{Asked, Prepared, apply, check_loads, chosen_loads, prepare};
+pub use apply::{Asked, Prepared, apply, check_loads, chosen_loads, prepare, target_of};
 pub use function::{Ordinate, Shape, UserFunction};
 pub use group::{Group, Members, USER_DEFINED};
 pub use load::{Load, loads_of};
@@ -168,7 +168,10 @@ impl Setup {
     /// All mistakes in the file, each at its line and column.
     pub fn beside(dataset: &Path) -> Result<Self, Error> {
         let file = dataset.with_extension("toml");
-        let text = match disk::read_to_string(&file) {
+        let text = disk::read(&file).and_then(|bytes| {
+            String::from_utf8(bytes).map_err(|e| std::io::Error::other(e.utf8_error()))
+        });
+        let text = match text {
             Ok(text) => text,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
                 return Ok(Self {
@@ -178,7 +181,7 @@ impl Setup {
             }
             Err(e) => {
                 let mut d = Diagnostic::error("file_unreadable", format!("cannot be read: {e}"));
-                d.file = Some(file.display().to_string());
+                d.file = Some(disk::text(&file));
                 return Err(d.into());
             }
         };
@@ -208,10 +211,15 @@ impl Setup {
         self.functions.iter().find(|f| f.name.text == name)
     }
 
+    /// Gives a mistake its place in the file.
+    fn placed(&self, span: Span, said: Diagnostic) -> Diagnostic {
+        let mut d = said.at(&self.text, span);
+        d.file = Some(disk::text(&self.file));
+        d
+    }
+
     /// Returns a mistake at a place of the file.
     fn mistake(&self, span: Span, code: &'static str, message: impl Into<String>) -> Diagnostic {
-        let mut d = Diagnostic::error(code, message).at(&self.text, span);
-        d.file = Some(self.file.display().to_string());
-        d
+        self.placed(span, Diagnostic::error(code, message))
     }
 }

@@ -3,6 +3,13 @@
 use crate::scalar::Scalar;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
+/// Returns an array of three. `array::from_fn` does the same by a machinery of guards and iterators
+/// that is compiled anew for every closure and every number.
+#[inline(always)]
+fn three<T>(of: impl Fn(usize) -> T) -> [T; 3] {
+    [of(0), of(1), of(2)]
+}
+
 /// A vector with three components.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vec3<S>(pub [S; 3]);
@@ -21,14 +28,12 @@ impl<S: Scalar> Vec3<S> {
     /// Returns the unit vector of axis `k` (0 x, 1 y, 2 z).
     #[inline(always)]
     pub fn axis(k: usize) -> Self {
-        Self(std::array::from_fn(|i| {
-            if i == k { S::one() } else { S::zero() }
-        }))
+        Self(three(|i| if i == k { S::one() } else { S::zero() }))
     }
     /// Converts a constant vector.
     #[inline(always)]
     pub fn constant(v: Vec3<f64>) -> Self {
-        Self(v.0.map(S::constant))
+        Self(three(|k| S::constant(v.0[k])))
     }
     /// Returns the scalar product.
     #[inline(always)]
@@ -48,7 +53,7 @@ impl<S: Scalar> Vec3<S> {
     /// Multiplies by a number.
     #[inline(always)]
     pub fn times(self, s: S) -> Self {
-        Self(self.0.map(|x| x * s))
+        Self(three(|k| self.0[k] * s))
     }
     /// Returns the squared length.
     #[inline(always)]
@@ -66,21 +71,21 @@ impl<S: Scalar> Add for Vec3<S> {
     type Output = Self;
     #[inline(always)]
     fn add(self, b: Self) -> Self {
-        Self(std::array::from_fn(|k| self.0[k] + b.0[k]))
+        Self(three(|k| self.0[k] + b.0[k]))
     }
 }
 impl<S: Scalar> Sub for Vec3<S> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, b: Self) -> Self {
-        Self(std::array::from_fn(|k| self.0[k] - b.0[k]))
+        Self(three(|k| self.0[k] - b.0[k]))
     }
 }
 impl<S: Scalar> Neg for Vec3<S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(|x| -x))
+        Self(three(|k| -self.0[k]))
     }
 }
 impl<S: Scalar> AddAssign for Vec3<S> {
@@ -126,12 +131,12 @@ impl<S: Scalar> Mat3<S> {
     /// Creates a matrix from its columns.
     #[inline(always)]
     pub fn from_columns(x: Vec3<S>, y: Vec3<S>, z: Vec3<S>) -> Self {
-        Self(std::array::from_fn(|i| [x.0[i], y.0[i], z.0[i]]))
+        Self(three(|i| [x.0[i], y.0[i], z.0[i]]))
     }
     /// Converts a constant matrix.
     #[inline(always)]
     pub fn constant(m: Mat3<f64>) -> Self {
-        Self(m.0.map(|r| r.map(S::constant)))
+        Self(three(|i| three(|j| S::constant(m.0[i][j]))))
     }
     /// Returns column `k`: for a rotation `R_GM`, axis `k` of M in G.
     #[inline(always)]
@@ -146,19 +151,17 @@ impl<S: Scalar> Mat3<S> {
     /// Returns the transpose; for a rotation, the inverse.
     #[inline(always)]
     pub fn transpose(&self) -> Self {
-        Self(std::array::from_fn(|i| {
-            std::array::from_fn(|j| self.0[j][i])
-        }))
+        Self(three(|i| three(|j| self.0[j][i])))
     }
     /// Returns `self · v`.
     #[inline(always)]
     pub fn apply(&self, v: Vec3<S>) -> Vec3<S> {
-        Vec3(std::array::from_fn(|i| self.row(i).dot(v)))
+        Vec3(three(|i| self.row(i).dot(v)))
     }
     /// Returns `selfᵀ · v`.
     #[inline(always)]
     pub fn apply_transposed(&self, v: Vec3<S>) -> Vec3<S> {
-        Vec3(std::array::from_fn(|i| self.column(i).dot(v)))
+        Vec3(three(|i| self.column(i).dot(v)))
     }
     /// Returns the matrix of the cross product: `cross_matrix(a) b = a × b`.
     #[inline(always)]
@@ -170,7 +173,7 @@ impl<S: Scalar> Mat3<S> {
     /// Multiplies by a number.
     #[inline(always)]
     pub fn times(&self, s: S) -> Self {
-        Self(self.0.map(|r| r.map(|x| x * s)))
+        Self(three(|i| three(|j| self.0[i][j] * s)))
     }
 }
 
@@ -178,27 +181,21 @@ impl<S: Scalar> Mul for Mat3<S> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, b: Self) -> Self {
-        Self(std::array::from_fn(|i| {
-            std::array::from_fn(|j| self.row(i).dot(b.column(j)))
-        }))
+        Self(three(|i| three(|j| self.row(i).dot(b.column(j)))))
     }
 }
 impl<S: Scalar> Add for Mat3<S> {
     type Output = Self;
     #[inline(always)]
     fn add(self, b: Self) -> Self {
-        Self(std::array::from_fn(|i| {
-            std::array::from_fn(|j| self.0[i][j] + b.0[i][j])
-        }))
+        Self(three(|i| three(|j| self.0[i][j] + b.0[i][j])))
     }
 }
 impl<S: Scalar> Sub for Mat3<S> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, b: Self) -> Self {
-        Self(std::array::from_fn(|i| {
-            std::array::from_fn(|j| self.0[i][j] - b.0[i][j])
-        }))
+        Self(three(|i| three(|j| self.0[i][j] - b.0[i][j])))
     }
 }
 

@@ -225,6 +225,79 @@ fn equal_frequencies_have_shapes_of_their_own() {
 }
 
 /// Code and sentence of what is told of the state about which a model was linearized.
+/// Free motions have two eigenvalues of zero each, and neither swing nor grow, whatever their parts are tied by.
+#[test]
+fn free_motions_have_eigenvalues_of_zero_and_slow_swings_have_not() {
+    let free = |found: &Linearization| {
+        let zeros = found.modes.iter().filter(|m| (m.re, m.im) == (0.0, 0.0));
+        zeros.count()
+    };
+    for n in [2, 3, 5] {
+        for stiffness in [1e-6, 1.0, 2e4, 1e11] {
+            let mut text = masses(n);
+            for k in 2..n + 1 {
+                let _ = writeln!(
+                    text,
+                    "SFORCE/{k}, TRANSLATION, I={}, J={k}, FUNCTION=-{stiffness:?}*(DZ({},{k},{k})-1)",
+                    k + 1,
+                    k + 1
+                );
+            }
+            let found = linear(&mut session(&text), &Wanted::default());
+            assert_eq!(free(&found), 2, "{n} {stiffness}: {}", found.table());
+            assert_eq!(found.modes.len(), 2 + (n - 1), "{n}: {}", found.table());
+            let swings = found.modes.iter().filter(|m| m.im > 0.0);
+            assert!(swings.clone().all(|m| m.damping_ratio().abs() < 1e-9));
+            assert_eq!(swings.count(), n - 1);
+        }
+    }
+    // bodies in space: six free motions, however they are tied to each other
+    for gravity in ["", "ACCGRAV/JGRAV=-9.81\n"] {
+        let body = |id: u32, place: &str| {
+            format!(
+                "PART/{id}, MASS=1.3, CM={id}0, IP=0.1,0.2,0.25, QG={place}, REULER=0.3,0.4,0.5\n\
+                 MARKER/{id}0, PART={id}, QP=0.1,0.2,0.3\nMARKER/{id}1, PART={id}\n"
+            )
+        };
+        let one = body(2, "0.7,0.1,0");
+        let found = linear(&mut session(&format!("{one}{gravity}")), &Wanted::default());
+        assert_eq!(
+            (free(&found), found.modes.len()),
+            (12, 12),
+            "{}",
+            found.table()
+        );
+        let two = format!(
+            "{one}{}BUSHING/1, I=21, J=31, K=1E4,2E4,3E4, KT=100,200,300\n{gravity}",
+            body(3, "0.7,0.1,0")
+        );
+        let found = linear(&mut session(&two), &Wanted::default());
+        assert_eq!(
+            (free(&found), found.modes.len()),
+            (12, 18),
+            "{}",
+            found.table()
+        );
+        assert!(
+            found.modes.iter().skip(12).all(|m| m.im > 0.0),
+            "{}",
+            found.table()
+        );
+    }
+    // a swing of three hours beside one of a hundred kilohertz, and a slow fall
+    let slow = |f: f64| format!("{:?}", (TAU * f).powi(2));
+    let text = format!(
+        "{}SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=102, FUNCTION=-{}*DZ(2,102,102)\n\
+         SFORCE/2, TRANSLATION, ACTIONONLY, I=3, J=103, FUNCTION=-{}*DZ(3,103,103)\n",
+        masses(2),
+        slow(1e-4),
+        slow(1e5)
+    );
+    let found = linear(&mut session(&text), &Wanted::default());
+    assert_eq!(free(&found), 0, "{}", found.table());
+    close(found.modes[0].frequency(), 1e-4, 1e-9);
+}
+
 fn told(s: &Session) -> Vec<String> {
     let all = s.run.record.warnings.iter();
     let all = all.filter(|w| w.code == "not_at_rest");

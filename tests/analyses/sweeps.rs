@@ -235,7 +235,12 @@ fn names_that_mean_nothing_are_refused_with_near_ones() {
     assert!(s.rows(&[vec![1.0, 2.0]], 1).is_err());
     let nobody = cognate::analysis::sweep::Unfollowed;
     let beyond = s.run(&[vec![1.0]], &[0, 1], 1, &nobody, |_| Ok(()));
-    assert!(beyond.unwrap_err().to_string().contains("run 1 is wanted"));
+    assert!(
+        beyond
+            .unwrap_err()
+            .to_string()
+            .contains("no run 1 among 1 point")
+    );
 }
 
 fn folder(name: &str) -> PathBuf {

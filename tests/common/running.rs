@@ -19,11 +19,12 @@ pub const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
 /// Steps that one integration of a test may try. The longest of all tests tries 70 000.
 pub const MAX_STEPS: usize = 100_000;
 
-/// Begins a session as [`Session::new`] does, with a limit of steps.
+/// Begins a session as [`Session::new`] does, with a limit of steps; it records what the test names.
 pub fn begin(model: Model, name: &str, options: Options) -> Session {
     let max_steps = options.max_steps.or(Some(MAX_STEPS));
     let options = Options {
         max_steps,
+        named_only: true,
         ..options
     };
     Session::new(model, name, options)

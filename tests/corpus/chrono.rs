@@ -35,12 +35,10 @@ const TIGHT: Bounds = [5e-6, 5e-6, 1e-3];
 /// Spherical and universal joints, where Adams was run with looser control (README of the corpus).
 const LOOSE: Bounds = [8e-4, 3e-3, 1.3e-2];
 
+#[track_caller]
 fn folder() -> Option<PathBuf> {
-    let root = std::env::var_os("COGNATE_CORPUS");
-    if root.is_none() {
-        println!("skipped: COGNATE_CORPUS is not set");
-    }
-    Some(Path::new(&root?).join("projectchrono__chrono/data/testing/joints"))
+    let root = super::needs::corpus()?;
+    Some(root.join("projectchrono__chrono/data/testing/joints"))
 }
 
 /// The element that exerts the force and the one that exerts the torque: `JOINT(1`, or two markers.

@@ -8,13 +8,7 @@ use cognate::results::{self, Run};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-pub fn corpus() -> Option<PathBuf> {
-    let root = std::env::var_os("COGNATE_CORPUS");
-    if root.is_none() {
-        println!("skipped: COGNATE_CORPUS is not set");
-    }
-    root.map(PathBuf::from)
-}
+pub use super::needs::corpus;
 
 fn options(error: f64) -> Options {
     Options {

@@ -106,16 +106,16 @@ fn tabs_and_form_feeds_are_blanks() {
 }
 
 #[test]
-fn bytes_outside_utf8_are_latin_1_and_come_back_the_same() {
-    let bytes = b"t\xe9\nPART/1, GROUND\n! gr\xfc\xdfe\nEND\n";
+fn bytes_outside_utf8_are_windows_1252_and_come_back_the_same() {
+    let bytes = b"t\xe9 \x80 \x96 \x81\nPART/1, GROUND\n! gr\xfc\xdfe\nEND\n";
     let source = dataset::syntax::Source::from_bytes(None, bytes);
-    assert_eq!(source.encoding, dataset::syntax::Encoding::Latin1);
+    assert_eq!(source.encoding, dataset::syntax::Encoding::Windows1252);
     let reading = dataset::read_source(source);
-    assert_eq!(reading.model.title, "té");
+    assert_eq!(reading.model.title, "té € – \u{81}");
     let formatted = reading.dataset.formatted();
     assert_eq!(
         reading.dataset.source.encode(&formatted),
-        b"t\xe9\nPART/1\n, GROUND\n! gr\xfc\xdfe\nEND\n"
+        b"t\xe9 \x80 \x96 \x81\nPART/1\n, GROUND\n! gr\xfc\xdfe\nEND\n"
     );
 }
 

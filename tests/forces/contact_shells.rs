@@ -133,7 +133,7 @@ fn a_shell_that_cannot_be_used_says_why_and_what_to_do() {
     );
     for (file, said) in [
         ("flat.obj", "no volume"),
-        ("short.shl", "1 points of 8"),
+        ("short.shl", "1 of 8 points"),
         ("text.stl", "no point"),
         ("other.dat", "STL, OBJ and SHL"),
         ("nowhere.stl", "no such file"),

@@ -115,6 +115,34 @@ fn a_rack_along_the_axis_of_its_pinion_or_in_its_place_is_a_mistake() {
 }
 
 #[test]
+fn a_rack_moves_with_the_rim_of_its_pinion_and_the_other_side_is_told() {
+    const SIDE: &str = "pinion_on_other_side";
+    // the pinion stands above the rack; y of MARKER/21 points up, or down
+    let up = "MARKER/21, PART=2, ZP=-1,0,0, XP=0,0,1\nMARKER/31, PART=3\n";
+    let down = "MARKER/21, PART=2, ZP=1,0,0, XP=0,0,1\nMARKER/31, PART=3\n";
+    let middle = up.replace("PART=2,", "PART=2, QP=0,0.099,0,");
+    let middle = middle.replace("ZP=-1,0,0, XP=0,0,1", "ZP=-1,0.099,0, XP=0,0.099,1");
+    let with = |markers: &str, pd: &str| rack(markers, "I=31, J=21").replace("PD=.2", pd);
+    for (markers, pd, is_right) in [
+        (up, "PD=.2", true),
+        (up, "PD=-.2", false),
+        (down, "PD=-.2", true),
+        (down, "PD=.2", false),
+        // a marker of the rack at the height of the axis says nothing of the side
+        (middle.as_str(), "PD=-.2", true),
+    ] {
+        let model = with(markers, pd);
+        let found = told(&model, SIDE);
+        assert_eq!(found.is_none(), is_right, "{markers} {pd}: {found:?}");
+        if let Some(found) = found {
+            assert_eq!(found.severity, Severity::Warning);
+            let other = if pd == "PD=.2" { "PD=-0.2" } else { "PD=0.2" };
+            assert!(found.help[0].contains(other), "{:?}", found.help);
+        }
+    }
+}
+
+#[test]
 fn the_pitch_point_of_a_gear_has_its_line_along_the_motion_there() {
     let gear = |line: &str| {
         format!(

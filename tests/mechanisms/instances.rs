@@ -201,12 +201,12 @@ fn an_instance_is_no_rigid_body_where_what_holds_it_or_lies_in_it_is_one() {
         ),
         (
             "! cognate: SPRINGDAMPER s = hnige, KT=1\n",
-            "there is no joint `hnige`",
+            "the model has no JOINT `hnige`",
         ),
         ("! cognate: MARKER/x m = base\n", "a number from 1 on"),
         (
             "! cognate: CURVE c = MARKER/20\n",
-            "MARKER/20 has no points",
+            "MARKER/20 is no MATRIX or CURVE",
         ),
     ] {
         let found = said(&format!("{ARM}{lines}"));

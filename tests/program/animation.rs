@@ -1,26 +1,31 @@
 //! `cognate animate`: the page that moves and the `.glb` file, read by a browser and by the validator of glTF where these are
-//! there; without them the tests say that they were skipped.
+//! there; without them the tests are left out.
 
 use super::command::{cognate, path, scratch};
+use super::needs;
 use crate::repository::root;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// Returns whether node and the packages of the viewer are here.
+#[track_caller]
+fn has_node() -> bool {
+    let packages = root("assets/viewer/node_modules").is_dir();
+    needs::has("npm ci in assets/viewer", packages) && needs::runs("node", "node", &["--version"])
+}
+
 /// Runs a script of the viewer; `None`: what it needs is not here.
+#[track_caller]
 fn script(name: &str, arguments: &[&str]) -> Option<Value> {
-    if !root("assets/viewer/node_modules").is_dir() {
-        println!("skipped: run npm ci in assets/viewer");
+    if !has_node() {
         return None;
     }
     let done = Command::new("node")
         .arg(root("assets/viewer").join(name))
         .args(arguments)
-        .output();
-    let Ok(done) = done else {
-        println!("skipped: there is no node");
-        return None;
-    };
+        .output()
+        .unwrap();
     let text = String::from_utf8(done.stdout).unwrap();
     assert!(
         done.status.success(),
@@ -28,11 +33,7 @@ fn script(name: &str, arguments: &[&str]) -> Option<Value> {
         String::from_utf8_lossy(&done.stderr)
     );
     let found: Value = serde_json::from_str(&text).unwrap();
-    if let Some(why) = found["skipped"].as_str() {
-        println!("skipped: {why}");
-        return None;
-    }
-    Some(found)
+    needs::has("Chromium", found["skipped"].is_null()).then_some(found)
 }
 
 /// A pendulum that starts level: no GRAPHICS, one joint.
@@ -311,18 +312,14 @@ fn a_run_that_was_read_from_a_file_is_shown_with_its_model() {
 
 #[test]
 fn the_viewer_is_what_its_sources_make() {
-    if !root("assets/viewer/node_modules").is_dir() {
-        println!("skipped: run npm ci in assets/viewer");
+    if !has_node() {
         return;
     }
-    let Ok(done) = Command::new("node")
+    let done = Command::new("node")
         .arg(root("assets/viewer/build.mjs"))
         .arg("--check")
         .output()
-    else {
-        println!("skipped: there is no node");
-        return;
-    };
+        .unwrap();
     assert!(
         done.status.success(),
         "{}",
@@ -544,7 +541,7 @@ fn a_dataset_is_drawn_whatever_forces_it_has() {
     assert_eq!(run.code, 4, "{}", run.err);
     let check = cognate(&["check", path(&model)]);
     assert!(
-        check.err.contains("nothing wrong, ") && check.err.contains(" note"),
+        check.err.contains("no mistake, ") && check.err.contains(" note"),
         "{}",
         check.err
     );
@@ -557,4 +554,65 @@ fn a_dataset_is_drawn_whatever_forces_it_has() {
         assert_eq!(done.code, 0, "{}", done.err);
         assert!(picture.is_file());
     }
+}
+
+#[test]
+fn a_dataset_without_an_end_stands_still_and_is_told_how_it_moves() {
+    let model = scratch("animate_still", "m.adm", PENDULUM);
+    let page = model.with_extension("html");
+    let said = |options: &[&str]| {
+        let done = cognate(&[&["animate", path(&model), "-o", path(&page)], options].concat());
+        assert_eq!(done.code, 0, "{}", done.err);
+        done.err
+    };
+    let still = said(&[]);
+    assert!(
+        still.contains("nothing moves") && still.contains("--end 2"),
+        "{still}"
+    );
+    assert!(!said(&["--end", "0.1", "--steps", "4"]).contains("nothing moves"));
+}
+
+#[cfg(feature = "gif")]
+#[test]
+fn a_film_repeats_takes_the_time_of_its_run_and_shows_the_motion() {
+    let model = scratch("animate_gif", "m.adm", PENDULUM);
+    let film = model.with_extension("gif");
+    let run = ["animate", path(&model), "--end", "2", "--steps", "100"];
+    let done = cognate(&[&run[..], &["-o", path(&film), "--width", "300"]].concat());
+    assert_eq!(done.code, 0, "{}", done.err);
+    let bytes = std::fs::read(&film).unwrap();
+    assert!(bytes.len() < 400_000, "{}", bytes.len());
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::Indexed);
+    let mut decoder = options.read_info(&bytes[..]).unwrap();
+    assert_eq!(decoder.width(), 300);
+    assert!(matches!(decoder.repeat(), gif::Repeat::Infinite));
+    let size = usize::from(decoder.width()) * usize::from(decoder.height());
+    let (mut hundredths, mut changed, mut n) = (0, 0, 0);
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        let stays = frame.transparent.unwrap();
+        let own = frame.buffer.iter().filter(|c| **c != stays).count();
+        // the first is whole, later ones are what has changed
+        assert!(
+            if n == 0 { own == size } else { own < size / 2 },
+            "{n}: {own}"
+        );
+        changed += usize::from(n > 0 && own > 50);
+        hundredths += usize::from(frame.delay);
+        n += 1;
+    }
+    assert!((hundredths as f64 - 200.0).abs() < 10.0, "{hundredths}");
+    assert!(n > 30 && changed > n / 2, "{changed} of {n}");
+    // what is for films says so where there is none
+    let page = model.with_extension("html");
+    let done = cognate(&[&run[..], &["-o", path(&page), "--width", "300"]].concat());
+    assert!(done.code == 2 && done.err.contains(".gif"), "{}", done.err);
+    let other = model.with_extension("avi");
+    let done = cognate(&[&run[..], &["-o", path(&other)]].concat());
+    assert!(
+        done.code == 2 && done.err.contains(".html, .gif and .glb"),
+        "{}",
+        done.err
+    );
 }

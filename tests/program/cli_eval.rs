@@ -540,19 +540,18 @@ fn expressions_come_from_standard_input_and_may_begin_with_a_minus() {
 
 // ------------------------------------------------------------------------------------------------------------- sessions
 
-/// The session that the README shows, typed again: lines behind `> ` and what continues them go in, the others come out.
+/// The session that the page of the prompt shows, typed again: lines behind `> ` and what continues them go in, the others come out.
 #[test]
-fn the_session_of_the_readme_is_what_really_comes_out() {
-    let readme = include_str!("../../README.md");
-    let (_, from) = readme.split_once("## At the prompt").unwrap();
-    let (_, from) = from.split_once("```text\n").unwrap();
+fn the_session_of_the_prompts_page_is_what_really_comes_out() {
+    let page = include_str!("../../docs/prompt.md");
+    let (_, from) = page.split_once("```text\n").unwrap();
     let (shown, _) = from.split_once("\n```").unwrap();
     let (mut typed, mut printed, mut open) = (String::new(), String::new(), false);
     for line in shown.lines() {
         let input = line
             .strip_prefix("> ")
             .or(if open { line.strip_prefix("  ") } else { None });
-        // in the README a line that goes on ends with an operator
+        // on the page a line that goes on ends with an operator
         open = input.is_some_and(|i| i.ends_with(['*', '+', '-', '/', ',', '(']));
         match input {
             Some(input) => typed += &format!("{input}\n"),
@@ -560,7 +559,7 @@ fn the_session_of_the_readme_is_what_really_comes_out() {
         }
     }
     assert!(typed.lines().count() > 10 && printed.lines().count() > 20);
-    let (said, code) = session(&typed, "readme.txt");
+    let (said, code) = session(&typed, "page.txt");
     let trimmed = |text: &str| {
         text.lines()
             .map(str::trim_end)

@@ -183,6 +183,10 @@ fn nothing_is_overwritten_by_an_export() {
     assert_eq!(to("m", &["--overwrite"]).code, 2);
     assert_eq!(std::fs::read_to_string(&model).unwrap(), MODEL);
     assert_eq!(to("copy", &[]).code, 0);
+    // what an export wrote the next one replaces, and keeps
+    assert_eq!(to("copy", &[]).code, 0);
+    assert!(folder.join("copy.adm~").exists());
+    std::fs::write(folder.join("copy.adm"), "somebody's").unwrap();
     let done = to("copy", &[]);
     assert!(
         done.code == 2 && done.err.contains("is there already"),

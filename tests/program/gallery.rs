@@ -88,7 +88,14 @@ fn mechanisms_do_what_is_known_of_them() {
                 .collect::<Vec<f64>>()
         };
         let rows: Vec<Vec<f64>> = table.lines().skip(2).map(numbers).collect();
-        for (k, e) in expected.iter().enumerate() {
+        // a column that is asked for twice is there once
+        let mut columns: Vec<&str> = Vec::new();
+        for e in &expected {
+            let known = columns.iter().position(|c| *c == e.difference);
+            let k = known.unwrap_or_else(|| {
+                columns.push(&e.difference);
+                columns.len() - 1
+            });
             let off = |row: &Vec<f64>| row[k + 1].abs();
             let found = if e.at_once {
                 let same = rows
@@ -163,7 +170,7 @@ fn drawings_are_the_same_every_time_and_name_the_bodies() {
         assert!(first.contains(name), "{name}");
     }
     let unknown = cognate(&["draw", path(&model), "--highlight", "JOINT/77"]);
-    assert_eq!(unknown.code, 2);
+    assert_eq!(unknown.code, 3);
     assert!(unknown.err.contains("JOINT/77"), "{}", unknown.err);
 }
 
@@ -195,7 +202,7 @@ fn axes_of_markers_take_the_place_of_joints_and_dimensions_have_their_values() {
     assert!(dimension.contains(">50 mm<"));
     for wrong in ["20", "20,10,30", "PART/2,10"] {
         let done = cognate(&["draw", path(&model), "--dimension", wrong]);
-        assert_eq!(done.code, 2, "{wrong}: {}", done.err);
+        assert_eq!(done.code, 3, "{wrong}: {}", done.err);
     }
     let unknown = cognate(&["draw", path(&model), "--dimension", "22,7777"]);
     assert_eq!(unknown.code, 3, "{}", unknown.err);

@@ -116,3 +116,64 @@ fn pairs_are_chosen_and_a_clearance_is_checked() {
         "{table}"
     );
 }
+
+/// A ball of radius 0.2 in the notch of an L, 0.4 from both of its walls, that moves along them.
+const NOTCH: &str = "\
+A ball in the notch of an L
+UNITS/SYSTEM=MKS
+PART/1, GROUND
+MARKER/10, PART=1
+MARKER/11, PART=1, QP=1.6,1.6,0.5
+PART/2, QG=1.6,1.6,0.5, MASS=1, CM=20, IP=.1,.1,.1
+MARKER/20, PART=2
+JOINT/1, TRANSLATIONAL, I=20, J=11
+MOTION/1, JOINT=1, FUNCTION=0.2*SIN(TIME)
+GRAPHICS/1, SHELL, RM=10, FILE=L.obj
+GRAPHICS/2, ELLIPSOID, CM=20, XSCALE=0.4, YSCALE=0.4, ZSCALE=0.4
+RESULTS/
+END
+";
+
+/// The L: 3 by 3 by 1, with a notch of 2 by 2 from (1, 1).
+const L: &str = "\
+v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nv 0 0 1\nv 3 0 1\nv 3 1 1\nv 1 1 1\nv 1 3 1\nv 0 3 1
+f 4 3 2 1\nf 6 5 4 1\nf 7 8 9 10\nf 7 10 11 12
+f 1 2 8 7\nf 2 3 9 8\nf 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12
+";
+
+#[test]
+fn a_concave_shell_is_as_near_as_its_surface_and_what_is_told_of_its_hull_is_said() {
+    let distances = |name: &str, model: &str| {
+        let model = scratch(name, "notch.adm", model);
+        let out = model.with_file_name("out");
+        scratch(name, "L.obj", L);
+        let run = [
+            "run",
+            path(&model),
+            "--end",
+            "1",
+            "--steps",
+            "10",
+            "--out",
+            path(&out),
+        ];
+        let done = cognate(&run);
+        assert_eq!(done.code, 0, "{}", done.err);
+        let results = out.join("notch.res");
+        let done = cognate(&["interference", path(&results), "--json"]);
+        assert_eq!(done.code, 0, "{}", done.err);
+        let found: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+        (
+            found["pairs"][0]["nearest"]["distance"].as_f64().unwrap(),
+            done.err,
+        )
+    };
+    let (free, said) = distances("interference_notch", NOTCH);
+    assert!((free - 0.4).abs() < 1e-6, "{free}");
+    assert!(!said.contains("concave"), "{said}");
+    // 0.1 into a wall: the depth is that of the hull, which is told
+    let into = NOTCH.replace("1.6,1.6,0.5", "1.1,1.6,0.5");
+    let (deep, said) = distances("interference_wall", &into);
+    assert!(deep <= -0.1, "{deep}");
+    assert!(said.contains("GRAPHICS/1 is concave"), "{said}");
+}

@@ -59,7 +59,39 @@ fn models_of_the_manual_are_written_and_never_over_others() {
     assert_eq!(write().code, 0);
     let text = std::fs::read_to_string(folder.join("cam.adm")).unwrap();
     assert_eq!(text, manual::example("cam").unwrap().dataset);
-    assert_ne!(write().code, 0);
+    std::fs::write(folder.join("cam.adm"), "mine").unwrap();
+    let refused = write();
+    assert_eq!(refused.code, 2, "{}", refused.err);
+    let text = std::fs::read_to_string(folder.join("cam.adm")).unwrap();
+    assert_eq!(text, "mine");
+}
+
+#[test]
+fn the_rack_of_the_manual_moves_with_the_rim_of_its_pinion() {
+    let model = manual::example("gears").unwrap();
+    scratch("manual_gears", "gears.adm", model.dataset);
+    let commands = scratch("manual_gears", "gears.acf", model.commands);
+    let results = commands.with_file_name("results");
+    // the lowest point of the pinion, 30 below its axis, and the rack there
+    let rim = "0.5*PI*60*2";
+    let asked = [
+        format!("VX(50,11)-{rim}"),
+        "DX(50,11)-30*AZ(21,11)".to_owned(),
+    ];
+    let mut arguments = vec!["run", path(&commands), "--out", path(&results), "--quiet"];
+    for column in &asked {
+        arguments.extend(["--column", column]);
+    }
+    let done = cognate(&arguments);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let table = std::fs::read_to_string(results.join("gears.csv")).unwrap();
+    let rows: Vec<Vec<f64>> = (table.lines().skip(2))
+        .map(|line| line.split(',').map(|x| x.parse().unwrap()).collect())
+        .collect();
+    assert!(rows.len() > 40);
+    for row in rows {
+        assert!(row[1].abs() < 1e-6 && row[2].abs() < 1e-6, "{row:?}");
+    }
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 #[path = "../common/command.rs"]
 mod command;
+#[path = "../common/needs.rs"]
+mod needs;
 #[path = "../common/repository.rs"]
 mod repository;
 #[path = "../common/results.rs"]
@@ -13,10 +15,12 @@ mod capabilities;
 mod cli;
 mod cli_eval;
 mod configuration;
+mod disk;
 mod doors;
 mod elements;
 mod exchange;
 mod first_hour;
+mod foreseen;
 mod gallery;
 mod groups;
 #[cfg(feature = "geometry")]
@@ -26,6 +30,7 @@ mod manual;
 mod motion;
 mod names;
 mod pages;
+mod piped;
 mod plots;
 mod prompt;
 mod readers;
@@ -35,4 +40,5 @@ mod results;
 mod runs;
 mod sweep;
 mod threads;
+mod viewer;
 mod written;

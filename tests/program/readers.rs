@@ -3,6 +3,7 @@
 //! `COGNATE_PYTHON` names a Python that has their packages; without it `python3` is asked.
 
 use super::command::{cognate, path, scratch};
+use super::needs;
 use crate::repository::root;
 use std::process::Command;
 
@@ -18,11 +19,8 @@ print(msg.check_if_finished(sys.argv[2]), msg.check_for_errors(sys.argv[2]), len
 #[test]
 fn adamspy_reads_results_and_log() {
     let python = std::env::var("COGNATE_PYTHON").unwrap_or_else(|_| "python3".into());
-    let has = Command::new(&python)
-        .args(["-c", "from adamspy.postprocess import xml, msg"])
-        .output();
-    if !has.is_ok_and(|a| a.status.success()) {
-        println!("skipped: {python} has no adamspy");
+    let has_adamspy = ["-c", "from adamspy.postprocess import xml, msg"];
+    if !needs::runs("adamspy", &python, &has_adamspy) {
         return;
     }
     let script = scratch("adamspy", "read.py", ADAMSPY);

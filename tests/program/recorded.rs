@@ -409,3 +409,207 @@ fn what_is_doubted_in_a_dataset_stands_in_the_record_and_the_log_with_its_place(
         "{log}"
     );
 }
+
+/// A model of pendulums, joints, motions, springs and requests whose names are drawn from a few, so that many clash.
+fn clashing(seed: u64) -> String {
+    const NAMES: [&str; 10] = [
+        "rod",
+        "Rod",
+        "rod_2",
+        "rod_2_2",
+        "JOINT_1",
+        "a.b",
+        "a",
+        "PART_3_XFORM",
+        "ENERGY",
+        "über x",
+    ];
+    let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(99);
+    let mut name = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        let k = (state >> 33) as usize % (NAMES.len() + 2);
+        let name = NAMES.get(k);
+        name.map_or_else(String::new, |name| format!("!  adams_view_name='{name}'\n"))
+    };
+    let mut text =
+        "clashing names\nACCGRAV/JGRAV=-9.81\nPART/1, GROUND\nMARKER/1, PART=1\nRESULTS/XRF\n"
+            .to_owned();
+    for n in 2..7 {
+        text += &format!(
+            "{}PART/{n}, MASS=1, CM={n}0, IP=1,1,1\nMARKER/{n}0, PART={n}, QP=1,0,0\nMARKER/{n}1, PART={n}\n",
+            name()
+        );
+        text += &format!("{}JOINT/{n}, REVOLUTE, I={n}1, J=1\n", name());
+    }
+    text += &format!("{}MOTION/1, JOINT=2, ROTATION, FUNCTION=TIME\n", name());
+    text += &format!("{}SPRINGDAMPER/1, ROTATION, I=31, J=1, KT=1\n", name());
+    text += &format!("{}VARIABLE/7, FUNCTION=TIME\n", name());
+    for n in 1..4 {
+        text += &format!(
+            "{}REQUEST/{n}, F2=DX({}0)\\F3=DY({}0)\\CNAMES=\"\",\"X\",\"X\"\n",
+            name(),
+            n + 1,
+            n + 1
+        );
+    }
+    text += "REQUEST/9, F2=TIME, RESULTS_NAME=rod\nMREQUEST/1, FORCE, JOINTS=2\nEND\n";
+    text
+}
+
+#[test]
+fn no_column_and_no_set_ever_has_the_name_of_another_and_all_are_read_back() {
+    let folder = scratch("clashing", "note", "");
+    let mut n_numbered = 0;
+    for seed in 0..24 {
+        let reading = cognate::dataset::read_text(&clashing(seed));
+        assert!(
+            !reading.failed(),
+            "{:?}\n{}",
+            reading.diagnostics,
+            clashing(seed)
+        );
+        let told = reading
+            .diagnostics
+            .iter()
+            .filter(|d| d.code == "name_twice")
+            .count();
+        let options = Options {
+            body_rates: true,
+            columns: vec!["rod.VX".into(), "2*TIME".into(), "2*TIME".into()],
+            ..all_sets()
+        };
+        let mut session = Session::new(reading.model.clone(), "test", options);
+        // that of several parts is a mistake
+        let is_one = cognate::analysis::session::check_column(&reading.model, "rod.VX").is_empty();
+        if !is_one {
+            session = Session::new(
+                reading.model.clone(),
+                "test",
+                Options {
+                    body_rates: true,
+                    ..all_sets()
+                },
+            );
+        }
+        session
+            .simulate(Analysis::Transient, 0.1, 2, &mut Unwatched)
+            .unwrap();
+        let run = session.run;
+        let unique = |names: &[&str]| names.iter().collect::<BTreeSet<_>>().len() == names.len();
+        let names: Vec<&str> = run.columns.iter().map(|c| c.name.as_str()).collect();
+        let sets: Vec<&str> = run.entities.iter().map(|e| e.name.as_str()).collect();
+        assert!(
+            unique(&names) && unique(&sets),
+            "{seed}: {names:?} {sets:?}"
+        );
+        for set in &run.entities {
+            let components: Vec<&str> = set.components.iter().map(|c| c.name.as_str()).collect();
+            assert!(unique(&components), "{}: {components:?}", set.name);
+        }
+        n_numbered += usize::from(told > 0);
+        // each part is found by the name that its set has
+        for (id, _) in reading.model.bodies().filter(|(_, p)| !p.ground) {
+            let label = reading.model.labels().name(&reading.model, id);
+            let found = reading.model.find_of(&[ElementKind::Part], &label);
+            let is_ambiguous = || found.as_ref().unwrap_err().to_string().contains("several");
+            assert!(found == Ok(id) || is_ambiguous(), "{label}: {found:?}");
+            assert!(
+                names.contains(&&*format!("{label}_XFORM.X")),
+                "{label}: {names:?}"
+            );
+        }
+        let mut shown = run.clone();
+        shown.table = Vec::new();
+        for format in results::format::Format::names(true) {
+            let file = folder.with_file_name(format!("{seed}.{format}"));
+            results::write(
+                &shown,
+                &file,
+                results::format::Style {
+                    units: true,
+                    decimal_comma: false,
+                },
+            )
+            .unwrap();
+            let back = results::read(&file).unwrap_or_else(|d| panic!("{format}: {d}"));
+            let read: Vec<&str> = back.columns.iter().map(|c| c.name.as_str()).collect();
+            assert!(unique(&read), "{format}: {read:?}");
+            if !["gra", "req"].contains(&format) {
+                assert_eq!(read, names, "{format}");
+            }
+            if format == "res" {
+                let read: Vec<&str> = back.entities.iter().map(|e| e.name.as_str()).collect();
+                assert_eq!(read, sets);
+            }
+        }
+    }
+    assert!(n_numbered > 12, "{n_numbered}");
+}
+
+#[test]
+fn a_run_that_is_asked_for_nothing_has_every_body_and_joint() {
+    let text = LIFT.replace("RESULTS/XRF\n", "");
+    let model = Model::from_text(&text).unwrap();
+    let without_requests = Model {
+        requests: Default::default(),
+        many_requests: Default::default(),
+        ..model
+    };
+    let columns = |options: Options, more: &[&str]| -> Vec<String> {
+        let mut session = Session::new(without_requests.clone(), "test", options);
+        for column in more {
+            session.add_column(column).unwrap();
+        }
+        session
+            .simulate(Analysis::Transient, 0.1, 2, &mut Unwatched)
+            .unwrap();
+        let run = &session.run;
+        run.table_columns()
+            .iter()
+            .map(|&c| run.columns[c].name.clone())
+            .collect()
+    };
+    let everything = columns(Options::default(), &[]);
+    assert_eq!(
+        everything,
+        columns(
+            Options {
+                full: true,
+                ..Options::default()
+            },
+            &[]
+        )
+    );
+    for (id, body) in without_requests.bodies() {
+        let set = format!(
+            "{}_XFORM.X",
+            without_requests.labels().name(&without_requests, id)
+        );
+        assert!(
+            body.ground || everything.contains(&set),
+            "{set}: {everything:?}"
+        );
+    }
+    for number in without_requests.joints.keys() {
+        let id = ElementKind::Joint.id(*number);
+        let set = format!(
+            "{}.FX",
+            without_requests.labels().name(&without_requests, id)
+        );
+        assert!(everything.contains(&set), "{set}");
+    }
+    // who names columns has these alone, and who wants none has none
+    assert_eq!(columns(Options::default(), &["TIME*2"]), ["time", "TIME*2"]);
+    let part = &everything[1];
+    assert_eq!(
+        columns(Options::default(), &[part]),
+        ["time", part.as_str()]
+    );
+    let options = Options {
+        named_only: true,
+        ..Options::default()
+    };
+    assert_eq!(columns(options, &[]), ["time"]);
+}

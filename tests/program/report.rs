@@ -62,7 +62,13 @@ fn a_report_recommends_a_run_and_writes_its_files() {
     assert!(["DOP853", "RADAU5"].contains(&method));
     // what was the user's stays
     std::fs::write(out.join("pendulum_report.html"), "mine").expect("a file");
-    assert_eq!(cognate(&args).code, 0);
+    assert_eq!(cognate(&args).code, 2);
+    assert_eq!(
+        std::fs::read_to_string(out.join("pendulum_report.html")).expect("mine"),
+        "mine"
+    );
+    let overwriting = [&args[..], &["--overwrite"]].concat();
+    assert_eq!(cognate(&overwriting).code, 0);
     let kept = std::fs::read_to_string(out.join("pendulum_report.html~")).expect("kept");
     assert_eq!(kept, "mine");
 }

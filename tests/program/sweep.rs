@@ -59,7 +59,11 @@ fn a_grid_is_a_table_that_plot_and_parquet_know() {
     }
     let before = std::fs::read(&csv).unwrap();
     let again = sweep();
-    assert!(again.err.contains("6 of 6 runs are in"), "{}", again.err);
+    assert!(
+        again.err.contains("has 6 of 6 runs already"),
+        "{}",
+        again.err
+    );
     assert_eq!(std::fs::read(&csv).unwrap(), before);
     let plot = |more: &[&str]| {
         let axes = ["--x", "VARIABLE/3", "--y", "last(DX(2))"];
@@ -196,7 +200,7 @@ fn columns_of_the_results_are_measured_by_their_names() {
     };
     let near = ask(&["max(abs(drop.XX))"]);
     assert!(
-        near.code == 3 && near.err.contains("columns of the results: drop.X"),
+        near.code == 3 && near.err.contains("did you mean drop.X"),
         "{}",
         near.err
     );

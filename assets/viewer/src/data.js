@@ -68,6 +68,11 @@ export function rowAt(times, t) {
   return low;
 }
 
+/** Returns whether an element is switched off at a row of the first run. */
+export function isOff(element, row) {
+  return Boolean(element.off?.some(([from, to]) => row >= from && row < to));
+}
+
 /** Writes a number with six digits, without noise. */
 export function digits(x) {
   if (x === undefined || x === null || Number.isNaN(x)) return '–';

@@ -3,9 +3,11 @@
 import css from './style.css';
 import uplotCss from 'uplot/dist/uPlot.min.css';
 import { Vector3 } from 'three';
+import { Compass } from './compass.js';
 import { digits, readData, rowAt } from './data.js';
 import { Panels } from './panels.js';
 import { Plots } from './plots.js';
+import { Film, compose, filmKind, save, sheet } from './record.js';
 import { Stage } from './stage.js';
 
 const icon = (path) => `<svg viewBox="0 0 12 12" width="12" height="12" fill="currentColor"><path d="${path}"/></svg>`;
@@ -16,7 +18,8 @@ const PAGE = `
 <div id="top"><div id="title"><b></b><span></span></div><div id="tools"></div></div>
 <div id="stage">
   <div id="names"></div><div id="dimensions"></div><div id="tip"></div>
-  <label id="scale"><span></span><input type="range" min="-1" max="1" step="0.05" value="0" title="Length of arrows"></label>
+  <div id="without" class="hidden"></div>
+  <label id="scale"><span id="rate"></span><span></span><input type="range" min="-1" max="1" step="0.05" value="0" title="Length of arrows"></label>
 </div>
 <div id="plots"></div>
 <div id="bar">
@@ -29,12 +32,30 @@ const PAGE = `
 </div>
 <div id="side"><div id="tabs"></div><div id="tree"></div><div id="runs" class="hidden"></div><div id="log" class="hidden"></div><div id="values"></div></div>`;
 
-const SECONDS = { sec: 1, second: 1, millisec: 1e-3, millisecond: 1e-3, microsec: 1e-6, nanosec: 1e-9, minute: 60, hour: 3600, day: 86400 };
 const SPEEDS = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 1000, 10000];
+/** Pictures in a second below which less is drawn. */
+const SLOW = 12;
 /** Time that a run takes on the page when real time is much shorter or longer, in s. */
 const USUAL_DURATION = 6;
 
 const byId = (id) => document.getElementById(id);
+
+/** Says in the middle of the screen why the page is not what it should be. */
+function fail(error) {
+  const box = byId('failure');
+  box.hidden = false;
+  box.textContent = `This page could not be shown: ${error?.message ?? error}`;
+  const advice = document.createElement('p');
+  advice.textContent = typeof DecompressionStream === 'undefined'
+    ? 'This browser cannot unpack the page: Chrome 80, Firefox 113, Safari 16.4 and later ones can.'
+    : 'Reload the page. If that does not help, another browser may show it, and cognate draw writes pictures without one.';
+  box.append(advice);
+  // what can be seen behind it may still be of use
+  box.onclick = () => (box.hidden = true);
+}
+// an event without an error is a remark of the browser
+window.addEventListener('error', (event) => event.error && fail(event.error));
+window.addEventListener('unhandledrejection', (event) => fail(event.reason));
 
 async function main() {
   const style = document.createElement('style');
@@ -53,6 +74,17 @@ async function main() {
   byId('title').querySelector('span').textContent = data.runs.map((r) => r.name).join(' and ');
 
   const stage = new Stage(byId('stage'), data);
+  const compass = new Compass(byId('stage'), data);
+  const without = (why) => {
+    byId('without').textContent = why;
+    byId('without').classList.toggle('hidden', !why);
+  };
+  if (!stage.renderer) without('No picture: this browser has no WebGL 2, or it is switched off. Curves and values are shown all the same.');
+  stage.canvas.addEventListener('webglcontextlost', () => without('The graphics card has dropped the picture; it comes back when it can.'));
+  stage.canvas.addEventListener('webglcontextrestored', () => {
+    without('');
+    draw();
+  });
   const plots = new Plots(byId('plots'), data, (t) => seek(t));
   const panels = new Panels(data, plots, (id) => {
     stage.highlight(id);
@@ -63,8 +95,8 @@ async function main() {
   const still = first.times.at(-1) === first.times[0];
   const clock = still ? Float64Array.from(first.times, (_, k) => k) : first.times;
   const [begin, end] = [clock[0], clock.at(-1)];
-  const state = { t: begin, row: 0, playing: false, loop: true, speed: 1, names: false, follow: false, selected: null, measuring: null };
-  const real = still ? 1 : SECONDS[first.timeUnit] ?? 1;
+  const state = { t: begin, row: 0, playing: false, loop: true, speed: 1, names: false, follow: false, selected: null, measuring: null, film: null, rate: 0 };
+  const real = still ? 1 : data.second;
 
   // --- time ---
 
@@ -106,12 +138,23 @@ async function main() {
   };
 
   let before = null;
+  // pictures since the frame rate was last told
+  let [shown, since] = [0, 0];
+  function counted(now) {
+    shown += 1;
+    if (now - since < 1000) return;
+    if (since) state.rate = (1000 * shown) / (now - since);
+    if (since && state.rate < SLOW) stage.lighten();
+    byId('rate').textContent = since ? `${state.rate.toFixed(state.rate < 10 ? 1 : 0)} pictures/s` : '';
+    [shown, since] = [0, now];
+  }
   function frame(now) {
     if (!state.playing) return;
+    counted(now);
     if (before !== null) {
       let t = state.t + ((now - before) / 1000) * (state.speed / real);
       if (t >= end) {
-        if (state.loop) t = begin;
+        if (state.loop && !state.film) t = begin;
         else {
           pause();
           t = end;
@@ -127,12 +170,16 @@ async function main() {
     if (state.t >= end) at(begin);
     state.playing = true;
     before = null;
+    [shown, since] = [0, 0];
     byId('play').innerHTML = PAUSE;
     requestAnimationFrame(frame);
   }
   function pause() {
     state.playing = false;
     byId('play').innerHTML = PLAY;
+    byId('rate').textContent = '';
+    // a film ends with its last picture
+    requestAnimationFrame(() => requestAnimationFrame(endFilm));
   }
 
   // --- drawing ---
@@ -152,10 +199,42 @@ async function main() {
       }
       measured();
       stage.render();
+      compass.draw(stage.camera);
       labels();
+      if (state.film) compose(state.film.canvas, stage, compass, words());
     });
   }
   stage.onChange = draw;
+
+  // --- pictures and films ---
+
+  const words = () => [byId('title').querySelector('b').textContent, byId('clock').textContent];
+  /** Returns what the stage shows as a picture. */
+  function picture() {
+    const canvas = sheet(stage);
+    stage.render();
+    compass.draw(stage.camera);
+    compose(canvas, stage, compass, words());
+    return new Promise((done) => canvas.toBlob(done, 'image/png'));
+  }
+  /** Plays once from the beginning and saves that as a film. */
+  function film(kind, button) {
+    at(begin, 0);
+    const canvas = sheet(stage);
+    compose(canvas, stage, compass, words());
+    state.film = new Film(canvas, kind, (blob, ending) => {
+      button.textContent = 'Film';
+      button.classList.remove('on');
+      save(blob, `${first.name}.${ending}`);
+    });
+    button.textContent = 'Stop film';
+    button.classList.add('on');
+    if (!state.playing) play();
+  }
+  function endFilm() {
+    state.film?.end();
+    state.film = null;
+  }
 
   const names = data.bodies.map((body) => {
     const label = document.createElement('div');
@@ -164,16 +243,7 @@ async function main() {
     if (!body.ground) byId('names').append(label);
     return label;
   });
-  const middles = data.bodies.map((body, k) => {
-    const group = stage.runs[0].bodies[k];
-    const sum = new Vector3();
-    const own = group.children.filter((m) => m.geometry);
-    for (const mesh of own) {
-      mesh.geometry.computeBoundingBox();
-      sum.add(mesh.geometry.boundingBox.getCenter(new Vector3()));
-    }
-    return own.length ? sum.divideScalar(own.length) : new Vector3(...(body.cm ?? [0, 0, 0]));
-  });
+  const middles = data.bodies.map((_, k) => stage.middleOf(k));
   function labels() {
     byId('names').classList.toggle('hidden', !state.names);
     if (!state.names) return;
@@ -292,11 +362,18 @@ async function main() {
   tool('Grid', 'Grid and shadows', () => (stage.grid.visible = !stage.grid.visible), true);
   if (data.runs.length > 1) tool('Second run', 'The second run, pale', () => (stage.runs[1].root.visible = !stage.runs[1].root.visible), true);
   tool('Follow', 'Keep the chosen body in the middle', () => (state.follow = !state.follow));
+  if (stage.renderer) {
+    tool('Picture', 'Save this view as a picture (PNG)', () => void picture().then((blob) => save(blob, `${first.name}.png`)));
+    const kind = filmKind();
+    if (kind && first.rows > 1) {
+      const button = tool('Film', 'Play once and save that as a film', () => void (state.film ? pause() : film(kind, button)));
+    }
+  }
   tool('◨', 'Panel beside the picture', () => {
     byId('app').classList.toggle('narrow');
     resize();
   });
-  byId('scale').querySelector('span').textContent = data.unit ? `grid ${digits(stage.gridStep)} ${data.unit}` : `grid ${digits(stage.gridStep)}`;
+  byId('scale').querySelector('span:not(#rate)').textContent = data.unit ? `grid ${digits(stage.gridStep)} ${data.unit}` : `grid ${digits(stage.gridStep)}`;
   const scale = byId('scale').querySelector('input');
   scale.classList.toggle('hidden', !data.arrows.length);
   scale.oninput = () => {
@@ -304,7 +381,7 @@ async function main() {
     at(state.t, state.row);
   };
 
-  const canvas = stage.renderer.domElement;
+  const { canvas } = stage;
   const name = (hit) => {
     const body = data.bodies[hit.body];
     const element = panels.elements.get(hit.element);
@@ -320,15 +397,22 @@ async function main() {
     const id = hit && (panels.elements.has(hit.element) && !hit.element.startsWith('GRAPHICS') ? hit.element : data.bodies[hit.body].id);
     panels.select(id);
   });
+  let pointed = null;
   canvas.addEventListener('pointermove', (e) => {
-    const hit = e.buttons ? null : stage.pick(e.clientX, e.clientY);
+    // one look a picture is enough
+    if (!pointed) requestAnimationFrame(() => point(pointed));
+    pointed = e;
+  });
+  function point(e) {
+    pointed = null;
+    const hit = e.buttons || e.pointerType === 'touch' ? null : stage.pick(e.clientX, e.clientY);
     const tip = byId('tip');
     tip.style.display = hit ? 'block' : 'none';
     if (!hit) return;
     tip.textContent = name(hit);
     const { left, top } = byId('stage').getBoundingClientRect();
     [tip.style.left, tip.style.top] = [`${e.clientX - left + 14}px`, `${e.clientY - top + 10}px`];
-  });
+  }
   window.addEventListener('keydown', (e) => {
     if (['INPUT', 'SELECT'].includes(e.target.tagName) && e.target.type !== 'range') return;
     const action = { ' ': () => (state.playing ? pause() : play()), ArrowLeft: () => toRow(state.row - 1), ArrowRight: () => toRow(state.row + 1), Home: () => toRow(0), End: () => toRow(first.rows - 1) }[e.key];
@@ -363,13 +447,10 @@ async function main() {
     dimension,
     dimensions: () => stage.dimensions.map((made) => stage.measured(made).length),
     draw: () => stage.render(),
+    picture,
   };
+  byId('failure').hidden = true;
   document.body.dataset.ready = 'yes';
 }
 
-main().catch((error) => {
-  const box = document.createElement('pre');
-  box.textContent = `This page could not be shown: ${error.message}`;
-  document.body.append(box);
-  throw error;
-});
+main().catch(fail);

@@ -1,6 +1,6 @@
 // The panels beside the picture: elements with their values at the cursor, facts of the runs, the log.
 
-import { digits } from './data.js';
+import { digits, isOff } from './data.js';
 
 const make = (tag, properties = {}, ...children) => {
   const made = Object.assign(document.createElement(tag), properties);
@@ -18,6 +18,8 @@ export class Panels {
     this.cells = [];
     this.row = 0;
     this.tree();
+    // elements that do not act at all times
+    this.switched = [...this.elements.values()].filter((element) => element.off);
     this.runs();
     this.log();
     this.tabs();
@@ -50,7 +52,7 @@ export class Panels {
       const family = make('details', { open: elements.length <= 40 && title !== 'data' });
       family.append(make('summary', { textContent: title[0].toUpperCase() + title.slice(1) + ' ' }, make('small', { textContent: elements.length })));
       for (const element of elements) {
-        const row = make('div', { className: 'row' + (element.inactive ? ' off' : ''), title: element.id, onclick: () => this.select(element.id) });
+        const row = make('div', { className: 'row', title: element.id, onclick: () => this.select(element.id) });
         if (colour.has(element.id)) row.append(make('i', { style: `background:${colour.get(element.id)}` }));
         row.append(make('b', { textContent: element.name }), make('small', { textContent: [element.kind, between(element)].filter(Boolean).join(' · ') }));
         family.append(row);
@@ -73,6 +75,7 @@ export class Panels {
     const box = document.getElementById('values');
     box.replaceChildren();
     this.cells = [];
+    this.state = null;
     this.shown = id;
     const element = this.elements.get(id);
     if (!element) {
@@ -81,17 +84,20 @@ export class Panels {
         const all = run.channels.map((c, k) => [c.name, k]).filter(([, k]) => run.channels[k].table);
         this.table(box, run, r, all, '');
       });
+      if (!this.cells.length) box.append(make('div', { textContent: 'Choose an element above, or click it in the picture: its values are shown here.' }));
       return;
     }
     box.append(make('h3', { textContent: `${element.name} ` }));
-    const what = [element.id, element.kind, element.inactive ? 'inactive' : ''].filter(Boolean).join(' · ');
+    const what = [element.id, element.kind].filter(Boolean).join(' · ');
     box.append(make('div', { textContent: element.between ? `${what}: ${element.between[0]} – ${element.between[1]}` : what }));
+    if (element.off) this.state = box.appendChild(make('div'));
     const number = Number(element.id.split('/')[1]);
     this.data.runs.forEach((run, r) => {
       const own = run.sets.filter((s) => s.number === number && (s.element === element.name || s.name === element.name || s.name.startsWith(`${element.name}_`)));
       for (const set of own) this.table(box, run, r, set.components, set.name);
     });
     if (element.statement) box.append(make('pre', { textContent: element.statement }));
+    this.at(this.row, this.others ?? []);
   }
 
   table(box, run, r, components, name) {
@@ -124,6 +130,8 @@ export class Panels {
   at(row, others) {
     this.row = row;
     this.others = others;
+    for (const element of this.switched) this.rows.get(element.id).classList.toggle('off', isOff(element, row));
+    if (this.state) this.state.textContent = isOff(this.elements.get(this.shown), row) ? 'switched off now' : 'acts now; it is switched off at other times';
     for (const { run, r, channel, cell } of this.cells) {
       cell.textContent = digits(run.value(channel)[r ? others[r - 1] ?? 0 : row]);
     }

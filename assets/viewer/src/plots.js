@@ -6,7 +6,10 @@ const COLOURS = ['#005ea2', '#d55e00', '#008a62', '#aa3377', '#c98a00', '#56aade
 /** Most plots and most curves of one that are shown when nobody chooses. */
 const PLOTS = 3;
 const CURVES = 5;
-const HEIGHT = 168;
+/** Height of a plot as a part of that of the page, with its bounds in px. */
+const [SHARE, LOWEST, HIGHEST] = [0.21, 96, 168];
+
+const height = () => Math.round(Math.min(Math.max(SHARE * window.innerHeight, LOWEST), HIGHEST));
 
 export class Plots {
   constructor(container, data, seek) {
@@ -50,7 +53,7 @@ export class Plots {
   draw() {
     for (const chart of this.charts) chart.destroy();
     this.container.replaceChildren();
-    this.container.style.gridTemplateColumns = `repeat(${this.groups.length}, minmax(0, 1fr))`;
+    this.container.style.setProperty('--plots', Math.max(this.groups.length, 1));
     this.charts = this.groups.map((group) => this.chart(group));
   }
 
@@ -79,16 +82,18 @@ export class Plots {
         series.push({
           label: this.data.runs.length > 1 ? `${name} (${run.name})` : name,
           stroke: colour, width: r ? 1.2 : 1.6, dash: r ? [6, 4] : undefined, spanGaps: tables.length > 1, points: { show: run.rows < 3 },
+          // a curve is where its values are, not at the nearest pixel
+          pxAlign: 0,
         });
       }
     });
     const chart = new uPlot({
       width: Math.max(box.clientWidth, 120),
-      height: HEIGHT,
+      height: height(),
       scales: { x: { time: false } },
       axes: [
         { size: 24, font: '11px sans-serif', grid: { stroke: '#e6e9ed' }, ticks: { size: 4 } },
-        { size: 58, font: '11px sans-serif', grid: { stroke: '#e6e9ed' }, ticks: { size: 4 }, label: group.unit || undefined, labelSize: 16, labelFont: '11px sans-serif' },
+        { size: 58, space: 22, font: '11px sans-serif', grid: { stroke: '#e6e9ed' }, ticks: { size: 4 }, label: group.unit || undefined, labelSize: 16, labelFont: '11px sans-serif' },
       ],
       cursor: { sync: { key: 'cognate' }, drag: { x: true, y: false } },
       legend: { show: true, live: false },
@@ -125,7 +130,7 @@ export class Plots {
   }
 
   resize() {
-    for (const chart of this.charts) chart.setSize({ width: Math.max(chart.root.parentElement.clientWidth, 120), height: HEIGHT });
+    for (const chart of this.charts) chart.setSize({ width: Math.max(chart.root.parentElement.clientWidth, 120), height: height() });
   }
 }
 

@@ -7,18 +7,20 @@
 use crate::arguments::SpanArgs;
 use crate::render::Sources;
 use crate::run::{self, Single};
+use crate::writing::WritingArgs;
 use crate::{Exit, complain_in_files, width};
 use crate::{Failure, configuration, draw, elements, interrupt, summary, verify as verifying};
 use cognate::analysis::session::script::obey;
-use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::session::{Analysis, Options, Session, check_column};
 use cognate::analysis::verify::verify;
 use cognate::analysis::work_limit::ProcessClock;
 use cognate::dataset::Reading;
 use cognate::dataset::command::{Command, Step};
-use cognate::diagnostic::{Cause, Diagnostic, Error, Severity};
+use cognate::diagnostic::{Cause, Diagnostic, Error, Severity, counted};
+use cognate::disk;
 use cognate::model::{ElementKind, Model};
 use cognate::report::{Curve, Plot};
-use cognate::results::{self, Status, digits_of_six};
+use cognate::results::{Status, digits_of_six};
 use std::path::{Path, PathBuf};
 
 /// Output steps of a run when nobody says.
@@ -72,17 +74,20 @@ impl Loaded {
     /// Tells what has been read and solved.
     pub fn info(&self) -> String {
         let model = &self.reading.model;
-        let mut text = format!("{}: {}\n", self.file.display(), model.title.trim());
-        let counted = ElementKind::ALL.iter();
-        let counted = counted.map(|kind| (model.numbers(*kind).len(), kind.keyword()));
-        let counted = counted.filter(|(n, _)| *n > 0);
-        let counted: Vec<String> = counted.map(|(n, kind)| format!("{n} {kind}")).collect();
-        text += &format!("{}\n", counted.join(", "));
+        let mut text = format!("{}: {}\n", disk::text(&self.file), model.title.trim());
+        let kinds = ElementKind::ALL.iter();
+        let kinds = kinds.map(|kind| (model.numbers(*kind).len(), kind.keyword()));
+        let kinds = kinds.filter(|(n, _)| *n > 0);
+        let kinds: Vec<String> = kinds.map(|(n, kind)| format!("{n} {kind}")).collect();
+        text += &format!("{}\n", kinds.join(", "));
         let warnings = self.reading.diagnostics.iter();
         let warnings = warnings.filter(|d| d.severity == Severity::Warning).count();
         if warnings > 0 {
-            let files = self.file.display();
-            text += &format!("{warnings} warnings: cognate check {files} tells them\n");
+            let files = disk::text(&self.file);
+            text += &format!(
+                "{}, which cognate check {files} shows\n",
+                counted(warnings, "warning")
+            );
         }
         let ends = self.steps.iter().filter(|s| is_simulation(s));
         let ends: Vec<&str> = ends.map(|s| s.text.as_str()).collect();
@@ -91,10 +96,26 @@ impl Loaded {
         }
         if let Some(session) = &self.run {
             let run = &session.run;
-            text += &format!("{}: {} rows", run.record.status.word(), run.rows());
+            text += &format!(
+                "{}: {}",
+                run.record.status.word(),
+                counted(run.rows(), "row")
+            );
             text += &format!(", up to {}\n", digits_of_six(session.time()));
         }
         text
+    }
+
+    /// Returns whether an expression that cannot be read alone is one of the model: it calls
+    /// elements by their names, or a component of results.
+    pub fn knows(&self, expression: &str) -> bool {
+        let model = &self.reading.model;
+        let is_named = model
+            .numbered(expression)
+            .map_or(true, |n| n.text != expression);
+        let is_letter = |c: char| c.is_alphabetic() || c == '_' || c == '\'';
+        let mut dots = expression.match_indices('.');
+        is_named || dots.any(|(at, _)| expression[..at].ends_with(is_letter))
     }
 
     /// Lists the elements of a kind, or all.
@@ -144,12 +165,7 @@ impl Loaded {
     /// When the file cannot be written, or is the one that was read.
     pub fn save(&self, file: &Path) -> Result<(), Diagnostic> {
         let source = &self.reading.dataset.source;
-        let read = source.file.as_deref().map(Path::new);
-        if read.is_some_and(|read| crate::convert::same_file(file, read)) {
-            let what = "the output is the input, which is never overwritten";
-            return Err(Diagnostic::error("usage", what));
-        }
-        results::write_bytes(file, &source.encode(&source.text))
+        WritingArgs::default().bytes(file, &source.encode(&source.text))
     }
 
     /// Counts the freedoms, and says what is fixed twice and what is free.
@@ -351,7 +367,7 @@ impl Loaded {
     /// Returns the mistakes in an expression: those of the check, which have places, else the
     /// others.
     fn mistaken(&self, expression: &str, others: Error) -> Failure {
-        let found = self.reading.model.check_expression(expression);
+        let found = check_column(&self.reading.model, expression);
         match found.is_empty() {
             true => others.into(),
             false => Failure {

@@ -1,124 +1,31 @@
-//! Names that a session gives to parts of expressions: what they stand for, and how a place in the
-//! text with all names replaced leads back to the text as it was typed.
+//! Names that a session gives to parts of expressions, and what they stand for.
 
-use cognate::diagnostic::{Diagnostic, Span};
-use cognate::expr::MOST_CHARACTERS;
+use cognate::diagnostic::Span;
+use cognate::expr::{Expansion, MOST_CHARACTERS};
 use std::collections::BTreeMap;
 
 /// Names, upper case, with the text that each stands for; earlier names are replaced in it.
 #[derive(Clone, Debug, Default)]
 pub struct Names(pub BTreeMap<String, String>);
 
-/// A text as it was typed, and the same with names replaced.
-#[derive(Clone, Debug)]
-pub struct Expansion {
-    /// as it was typed
-    pub typed: String,
-    /// with names replaced by what they stand for, in parentheses
-    pub text: String,
-    /// pieces of both texts, in order
-    pieces: Vec<Piece>,
-}
-
-/// A word, or what is between words, in both texts.
-#[derive(Clone, Copy, Debug)]
-struct Piece {
-    typed: Span,
-    expanded: Span,
-    /// whether it is a name and what it stands for
-    replaced: bool,
-}
-
 impl Names {
     /// Replaces names by what they stand for, in parentheses.
     pub fn expand(&self, typed: &str) -> Expansion {
-        let mut text = String::with_capacity(typed.len());
-        let mut pieces = Vec::new();
-        let mut at = 0;
+        if typed.len() > MOST_CHARACTERS {
+            // no expression has so many characters: it is refused as it stands
+            return Expansion::new(typed, Vec::new());
+        }
+        let (mut at, mut length) = (0, typed.len());
+        let mut parts = Vec::new();
         for word in words(typed) {
-            let start = text.len();
-            let body = self
-                .0
-                .get(&word.to_ascii_uppercase())
-                .filter(|body| start + body.len() < MOST_CHARACTERS);
-            match body {
-                Some(body) => text.extend(["(", body, ")"]),
-                None => text.push_str(word),
+            let body = self.0.get(&word.to_ascii_uppercase());
+            if let Some(body) = body.filter(|body| length + body.len() < MOST_CHARACTERS) {
+                length += body.len();
+                parts.push((Span::new(at, at + word.len()), format!("({body})")));
             }
-            pieces.push(Piece {
-                typed: Span::new(at, at + word.len()),
-                expanded: Span::new(start, text.len()),
-                replaced: body.is_some(),
-            });
             at += word.len();
         }
-        Expansion {
-            typed: typed.to_owned(),
-            text,
-            pieces,
-        }
-    }
-}
-
-impl Expansion {
-    /// The diagnostic about the expanded text as one about the text that was typed: a place inside
-    /// a replaced name becomes that name, and advice says what the name stands for.
-    pub fn as_typed(&self, said: Diagnostic) -> Diagnostic {
-        if !self.pieces.iter().any(|p| p.replaced) {
-            return said;
-        }
-        let mut inside: Vec<Span> = Vec::new();
-        let mut place = |span: Span| {
-            let (start, first) = self.typed_at(span.start);
-            let (end, last) = self.typed_at(span.end.saturating_sub(1).max(span.start));
-            inside.extend([first, last].into_iter().flatten());
-            let start = first.map_or(start, |name| name.start);
-            let one_past = usize::from(span.end > span.start);
-            Span::new(
-                start,
-                last.map_or(end + one_past, |name| name.end).max(start),
-            )
-        };
-        let span = said.span.map(&mut place);
-        let marks = said
-            .marks
-            .iter()
-            .map(|(span, what)| (place(*span), what.clone()))
-            .collect();
-        let before = |span: Span| self.typed.get(..span.start).unwrap_or(&self.typed);
-        let mut said = Diagnostic {
-            column: span.map_or(said.column, |s| before(s).chars().count() + 1),
-            span,
-            marks,
-            ..said
-        };
-        inside.dedup();
-        for name in inside {
-            let word = self.typed.get(name.start..name.end).unwrap_or_default();
-            if let Some(piece) = self.pieces.iter().find(|p| p.typed == name) {
-                let body = self
-                    .text
-                    .get(piece.expanded.start + 1..piece.expanded.end - 1);
-                said.help
-                    .push(format!("{word} stands for {}", body.unwrap_or_default()));
-            }
-        }
-        said
-    }
-
-    /// The byte of the typed text for one of the expanded text; the name that stands there, if a
-    /// name was replaced there.
-    fn typed_at(&self, expanded: usize) -> (usize, Option<Span>) {
-        let piece = self
-            .pieces
-            .iter()
-            .find(|p| (p.expanded.start..p.expanded.end).contains(&expanded));
-        match piece {
-            Some(p) if p.replaced => (p.typed.start, Some(p.typed)),
-            Some(p) => (p.typed.start + (expanded - p.expanded.start), None),
-            // one past the last character
-            None => (self.typed.len(), None),
-        }
+        Expansion::new(typed, parts)
     }
 }
 

@@ -3,14 +3,15 @@
 
 use super::commands::{COMMANDS, unknown_command, usage};
 use super::model::Loaded;
-use super::names::{Expansion, Names};
+use super::names::Names;
 use crate::eval::DialectName;
 use crate::formula::{Formula, Setting, derivative_names, give, times};
+use crate::writing::WritingArgs;
 use crate::{Failure, anatomy};
 use crate::{card, explain, plot, statements};
-use cognate::diagnostic::{Cause, Diagnostic};
+use cognate::diagnostic::{Cause, Diagnostic, counted};
 use cognate::expr::ast::Dialect;
-use cognate::expr::{Profile, parse, symbol};
+use cognate::expr::{Expansion, Profile, parse, symbol};
 use cognate::report::picture::{self, PictureFormat};
 use cognate::report::terminal::terminal;
 use cognate::report::{Curve, Plot, svg::svg};
@@ -112,17 +113,19 @@ impl Session {
                 .setting
                 .data
                 .read_markers(Path::new(rest))
-                .map(|()| format!("{} markers\n", self.setting.data.markers.len())),
-            ":splines" => self
-                .setting
-                .data
-                .read_splines(Path::new(rest))
-                .map(|()| format!("{} splines\n", self.setting.data.bindings.splines.len())),
-            ":curves" => self
-                .setting
-                .data
-                .read_curves(Path::new(rest))
-                .map(|()| format!("{} curves\n", self.setting.data.bindings.curves.len())),
+                .map(|()| format!("{}\n", counted(self.setting.data.markers.len(), "marker"))),
+            ":splines" => self.setting.data.read_splines(Path::new(rest)).map(|()| {
+                format!(
+                    "{}\n",
+                    counted(self.setting.data.bindings.splines.len(), "spline")
+                )
+            }),
+            ":curves" => self.setting.data.read_curves(Path::new(rest)).map(|()| {
+                format!(
+                    "{}\n",
+                    counted(self.setting.data.bindings.curves.len(), "curve")
+                )
+            }),
             ":plot" => return self.plot(rest),
             ":explain" => return self.explain(rest),
             ":load" | ":info" | ":list" | ":show" | ":rename" | ":delete" | ":save" | ":verify"
@@ -179,7 +182,10 @@ impl Session {
         }
         match Formula::new(text, &self.setting) {
             Ok(formula) => !formula.is_given(&self.setting.data),
-            Err(d) => d.is(Cause::UnknownElement),
+            Err(d) => {
+                let model = self.model.as_ref();
+                d.is(Cause::UnknownElement) || model.is_some_and(|model| model.knows(text))
+            }
         }
     }
 
@@ -437,7 +443,8 @@ impl Session {
         };
         let shown = match file {
             Some(file) => svg(&picture)
-                .and_then(|text| picture::write(&text, Path::new(file)))
+                .and_then(|text| picture::bytes(&text, Path::new(file)))
+                .and_then(|bytes| WritingArgs::default().bytes(Path::new(file), &bytes))
                 .map(|()| format!("plot in {file}\n")),
             None => terminal(&picture, plot::terminal_style()),
         };

@@ -1,12 +1,14 @@
 //! `cognate runs compare`: the largest differences between two runs, channel by channel.
 
+use crate::recorded;
 use crate::table::Table;
-use crate::{Exit, Outcome, remark, say, width};
-use cognate::diagnostic::Diagnostic;
+use crate::{Exit, Outcome, piped, remark, say, width};
+use cognate::diagnostic::{Diagnostic, counted};
+use cognate::disk;
 use cognate::results::comparison::{Comparison, Difference, compare};
 use cognate::results::format::Format;
 use cognate::results::kept::{self, KeptRun};
-use cognate::results::{self, digits_of_six, json};
+use cognate::results::{digits_of_six, json};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -22,14 +24,18 @@ const PREFERRED: [&str; 5] = ["csv", "table.json", "parquet", "res", "gra"];
 /// is interpolated.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Name of a run with its folder, or a file of results of any format
+    /// Name of a run with its folder, or a file of results of any format; - reads .csv from
+    /// standard input, gra:- and so on others
+    #[arg(value_parser = piped::results())]
     first: PathBuf,
-    /// The other
+    /// The other; - reads .csv from standard input, gra:- and so on others
+    #[arg(value_parser = piped::results())]
     second: PathBuf,
     /// Compare at all output times of the first; the second is taken as straight between its own
     #[arg(long)]
     interpolate: bool,
-    /// End with exit code 8 where a channel differs by more than this part of its range
+    /// End with exit code 8 where a channel differs by more than this part of its range [default:
+    /// any difference is fine]
     #[arg(long, value_name = "PART", value_parser = part)]
     tolerance: Option<f64>,
     /// Show all channels, also those without difference
@@ -52,7 +58,7 @@ fn part(text: &str) -> Result<f64, String> {
 /// When one cannot be read, or they share no time.
 pub fn run(args: &Args) -> Outcome {
     let [a, b] = files(&args.first, &args.second)?;
-    let runs = [results::read(&a)?, results::read(&b)?];
+    let runs = [recorded::read(&a)?, recorded::read(&b)?];
     let found = compare(&runs[0], &runs[1], args.interpolate)?;
     match args.json {
         true => say(&json::text(&as_json(&found, [&a, &b]))),
@@ -94,7 +100,10 @@ fn tables_of(named: &Path) -> Result<Vec<(usize, PathBuf)>, Diagnostic> {
     let is_table = Format::row(&ending.to_lowercase()).is_some_and(is_both);
     let run = kept::find(named);
     let is_record = |run: &KeptRun| run.record_file() == named;
-    if named.exists() && (is_table || run.is_err()) && !run.as_ref().is_ok_and(is_record) {
+    if cognate::disk::is_there(named)
+        && (is_table || run.is_err())
+        && !run.as_ref().is_ok_and(is_record)
+    {
         // other formats of the run do not matter: this one was chosen
         return Ok(vec![(PREFERRED.len(), named.to_owned())]);
     }
@@ -118,10 +127,10 @@ fn print(found: &Comparison, files: [&Path; 2], all: bool, time_unit: &str) {
     if shown > 0 {
         say(&table(&found.channels[..shown]));
     }
-    let [a, b] = files.map(|f| f.display().to_string());
+    let [a, b] = files.map(|f| disk::text(&f));
     let mut facts = vec![format!(
-        "{differing} of {} channels differ between {a} and {b}",
-        found.channels.len()
+        "{differing} of {} differ between {a} and {b}",
+        counted(found.channels.len(), "channel")
     )];
     if differing > shown {
         facts.push(format!(
@@ -132,19 +141,26 @@ fn print(found: &Comparison, files: [&Path; 2], all: bool, time_unit: &str) {
     let missing = found.channels.iter().filter(|d| d.missing > 0).count();
     if missing > 0 {
         facts.push(format!(
-            "{missing} channels have outputs at which one run alone has a value"
+            "in {}, one run alone has values at some outputs",
+            counted(missing, "channel")
         ));
     }
     facts.push(match found.interpolated {
         true => format!(
-            "at {} output times of {a}; {b} is taken as straight between its outputs",
-            found.outputs
+            "at {} of {a}; {b} is taken as straight between its outputs",
+            counted(found.outputs, "output time")
         ),
-        false => format!("at {} output times that both have", found.outputs),
+        false => format!(
+            "at {} that both have",
+            counted(found.outputs, "output time")
+        ),
     });
     for (file, n) in [&a, &b].into_iter().zip(found.left_out) {
         if n > 0 && !(found.interpolated && file == &b) {
-            facts.push(format!("{n} outputs of {file} have no partner: left out"));
+            facts.push(format!(
+                "left out: {} of {file} at times that the other has not",
+                counted(n, "output")
+            ));
         }
     }
     for (file, names) in [&a, &b].into_iter().zip(&found.alone) {
@@ -208,7 +224,7 @@ fn as_json(found: &Comparison, files: [&Path; 2]) -> Value {
         })
     };
     json!({
-        "files": files.map(|f| f.display().to_string()),
+        "files": files.map(|f| disk::text(&f)),
         "outputs": found.outputs,
         "left_out": found.left_out,
         "interpolated": found.interpolated,

@@ -5,6 +5,7 @@ mod compare;
 use super::table::Table;
 use super::{Exit, Failure, Outcome, remark, say, width};
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use cognate::results::kept::{self, KeptRun, State};
 use cognate::results::{digits_of_six, json};
 use serde_json::{Value, json};
@@ -70,7 +71,7 @@ pub fn run(args: &Args) -> Outcome {
             let run = kept::find(run)?;
             told_apart(&run.rename(name)?);
             let now = run.record_file().with_file_name(name);
-            let now = now.strip_prefix(".").unwrap_or(&now).display();
+            let now = disk::text(now.strip_prefix(".").unwrap_or(&now));
             remark(format!("{} is now {now}", run.place()));
             Ok(Exit::Done)
         }
@@ -87,7 +88,7 @@ fn list(args: &Args) -> Outcome {
             let all: Vec<Value> = runs.iter().map(as_json).collect();
             say(&json::text(&json!({ "runs": all })));
         }
-        (false, true) => remark(format!("no runs in {}", args.folder.display())),
+        (false, true) => remark(format!("no runs in {}", disk::text(&args.folder))),
         (false, false) => say(&table(&runs)),
     }
     Ok(Exit::Done)
@@ -138,14 +139,14 @@ fn table(runs: &[KeptRun]) -> String {
         let files = run.files();
         let own = files.iter().filter(|f| f.is_own);
         let endings = own.clone().map(|f| {
-            let rest = f.path.file_name().unwrap_or_default().to_string_lossy();
+            let rest = disk::text(f.path.file_name().unwrap_or_default());
             let rest = rest.strip_prefix(&run.name).map(str::to_owned);
             rest.unwrap_or_else(|| f.name.clone())
         });
         let others = files.iter().filter(|f| !f.is_own).count();
         let parts = run.parts();
         let endings = endings.chain(parts.iter().filter_map(|(path, _)| {
-            let name = path.file_name()?.to_string_lossy();
+            let name = disk::text(path.file_name()?);
             name.strip_prefix(&run.name).map(str::to_owned)
         }));
         let others = match others {
@@ -180,13 +181,13 @@ fn as_json(run: &KeptRun) -> Value {
             (false, Some(_)) => "changed",
             (false, None) => "missing",
         };
-        json!({ "name": f.name, "path": f.path.display().to_string(), "bytes": f.bytes, "state": state })
+        json!({ "name": f.name, "path": disk::text(&f.path), "bytes": f.bytes, "state": state })
     };
     let fact = |key: &str| run.record[key].clone();
     json!({
         "run": run.place(),
         "name": run.name,
-        "folder": run.folder.display().to_string(),
+        "folder": disk::text(&run.folder),
         "model": fact("model"),
         "status": match run.state() {
             State::CutOff => json!("cut_off"),
@@ -198,7 +199,7 @@ fn as_json(run: &KeptRun) -> Value {
         "method": fact("method"),
         "error": fact("error"),
         "files": run.files().iter().map(file).collect::<Vec<_>>(),
-        "parts": run.parts().iter().map(|(path, bytes)| json!({ "path": path.display().to_string(), "bytes": bytes })).collect::<Vec<_>>(),
+        "parts": run.parts().iter().map(|(path, bytes)| json!({ "path": disk::text(&path), "bytes": bytes })).collect::<Vec<_>>(),
     })
 }
 
@@ -208,12 +209,12 @@ fn delete(names: &[PathBuf], yes: bool) -> Outcome {
     let runs = runs.collect::<Result<Vec<_>, Diagnostic>>()?;
     if !yes {
         for run in &runs {
-            remark(format!("{}:", run.record_file().display()));
+            remark(format!("{}:", disk::text(&run.record_file())));
             for file in run.files().iter().filter(|f| f.is_own) {
-                remark(format!("  {}", file.path.display()));
+                remark(format!("  {}", disk::text(&file.path)));
             }
             for (part, _) in run.parts() {
-                remark(format!("  {}", part.display()));
+                remark(format!("  {}", disk::text(&part)));
             }
         }
         remark("delete these files? [y/N]");
@@ -235,7 +236,7 @@ fn delete(names: &[PathBuf], yes: bool) -> Outcome {
 /// Remarks on files that are no longer as a run has written them.
 fn told_apart(files: &[PathBuf]) {
     for file in files {
-        let file = file.display();
+        let file = disk::text(&file);
         remark(format!(
             "{file} is not as the run wrote it: it stays as it is"
         ));

@@ -3,6 +3,7 @@
 
 use super::{LAST_USED, Setup};
 use cognate::diagnostic::{Cause, Diagnostic};
+use cognate::disk;
 use cognate::results;
 use toml_edit::{Array, DocumentMut, Item, Table, Value};
 
@@ -123,7 +124,7 @@ pub fn restore(before: &Setup) -> Result<(), Diagnostic> {
         return results::write_text(&before.file, &before.text);
     }
     std::fs::remove_file(&before.file).map_err(|e| {
-        let what = format!("{} cannot be removed: {e}", before.file.display());
+        let what = format!("{} cannot be removed: {e}", disk::text(&before.file));
         Diagnostic::error(Cause::FileUnwritable, what)
     })
 }

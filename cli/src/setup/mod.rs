@@ -6,12 +6,13 @@ pub mod edit;
 
 pub use cognate::setup::{
     Asked, Case, LAST_USED, Load, Members, Ordinate, Prepared, Setup, USER_DEFINED, UserFunction,
-    loads_of,
+    loads_of, target_of,
 };
 
 use super::{Exit, Failure, remark, run};
 use cognate::dataset::command::Script;
 use cognate::diagnostic::{Diagnostic, Error};
+use cognate::disk;
 use cognate::model::Model;
 use cognate::results::Loads;
 use std::path::{Path, PathBuf};
@@ -78,7 +79,7 @@ fn keep(setup: &Setup, names: &[String], loads: Option<&Loads>) {
     match kept {
         Ok(_) if loads.is_some() => remark(format!(
             "the choice is kept in {}; --loads all takes all loads again",
-            setup.file.display()
+            disk::text(&setup.file)
         )),
         Ok(_) => {}
         Err(d) => remark(format!("the choice of loads is not kept: {}", d.message)),
@@ -114,7 +115,7 @@ pub fn dataset_of(model: &Path) -> Result<PathBuf, Failure> {
     let named = script.model_file();
     let named = named.or_else(|| is_log.then(|| model.with_extension("adm")));
     named.ok_or_else(|| {
-        let what = format!("{} names no dataset", model.display());
+        let what = format!("{} names no dataset", disk::text(&model));
         let d = Diagnostic::error("no_model", what);
         d.help("begin it with FILE/MODEL=name").into()
     })

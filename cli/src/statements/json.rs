@@ -51,7 +51,7 @@ fn argument(entry: &Entry) -> Value {
         "name": note.name,
         "shortest": (capitals.len() < first.len()).then_some(capitals),
         "other_spellings": others,
-        "type": kind(&a.kind),
+        "type": a.kind.name(),
         "takes": a.kind.describe(),
         "words": words(&a.kind),
         "unit": (!note.unit.is_empty()).then_some(note.unit),
@@ -62,24 +62,6 @@ fn argument(entry: &Entry) -> Value {
         "has_effect": note.effect == Effect::Solved,
         "meaning": note.meaning,
     })
-}
-
-/// Returns the name of a kind of value.
-fn kind(kind: &Kind) -> &'static str {
-    match kind {
-        Kind::Flag => "flag",
-        Kind::Id => "integer",
-        Kind::Ids { .. } => "integers",
-        Kind::Real { angle: false } => "real",
-        Kind::Real { angle: true } => "angle",
-        Kind::Reals { angle: false, .. } => "reals",
-        Kind::Reals { angle: true, .. } => "angles",
-        Kind::Word(_) => "word",
-        Kind::Words(_) => "words",
-        Kind::Text | Kind::Raw => "text",
-        Kind::Texts => "texts",
-        Kind::Formula => "expression",
-    }
 }
 
 /// Returns the words that an argument takes.

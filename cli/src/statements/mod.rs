@@ -4,10 +4,12 @@ mod json;
 mod markdown;
 
 use super::card::wrapped;
-use super::{Exit, Outcome, say, width};
+use super::writing::WritingArgs;
+use super::{Exit, Failure, Outcome, piped, say, width};
 use cognate::dataset::manual::{self, Effect, Entry, Example, Page};
 use cognate::dataset::value::Kind;
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use std::path::{Path, PathBuf};
 
 /// List the statements and commands, or explain one
@@ -21,12 +23,14 @@ Examples:
 pub struct Args {
     /// Keyword of a statement or command; abbreviations are understood
     name: Option<String>,
-    /// Print one of the models of the manual, dataset and commands
+    /// Print one of the models of the manual, dataset and commands [default: none]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["name", "json"])]
     model: Option<String>,
-    /// Of --model: write the two files into this folder instead
-    #[arg(long, value_name = "DIR", requires = "model")]
+    /// Of --model: write the two files into this folder instead [default: they are printed]
+    #[arg(long, value_name = "DIR", requires = "model", value_parser = piped::refused(piped::SEVERAL))]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -50,7 +54,7 @@ pub fn run(args: &Args) -> Outcome {
             };
             say(&shown);
         }
-        (None, Some(model)) => of_model(model, args.out.as_deref())?,
+        (None, Some(model)) => of_model(model, args.out.as_deref().map(|out| (out, args.writing)))?,
         (None, None) if args.json => say(&cognate::results::json::text(&json::all())),
         (None, None) if args.markdown => say(&markdown::manual()),
         (None, None) => say(&list()),
@@ -95,38 +99,35 @@ fn unknown(message: String, near: &[&str], otherwise: &str) -> Diagnostic {
 }
 
 /// Prints a model, or writes its two files.
-fn of_model(name: &str, folder: Option<&Path>) -> Result<(), Diagnostic> {
+fn of_model(name: &str, folder: Option<(&Path, WritingArgs)>) -> Result<(), Failure> {
     let Some(model) = manual::example(name) else {
         let names: Vec<&str> = manual::examples().iter().map(|e| e.name).collect();
         let near = cognate::diagnostic::near_names(name, names.iter().copied());
         let otherwise = format!("the models are {}", names.join(", "));
-        return Err(unknown(
+        return Err(Failure::from(unknown(
             format!("the manual has no model `{name}`"),
             &near,
             &otherwise,
-        ));
+        )));
     };
     match folder {
         None => say(&format!(
             "! {0}.adm\n{1}\n! {0}.acf\n{2}",
             model.name, model.dataset, model.commands
         )),
-        Some(folder) => write(model, folder)?,
+        Some((folder, writing)) => write(model, folder, writing)?,
     }
     Ok(())
 }
 
-/// Writes the two files of a model; files that exist stay as they are.
-fn write(model: &Example, folder: &Path) -> Result<(), Diagnostic> {
+/// Writes the two files of a model.
+fn write(model: &Example, folder: &Path, writing: WritingArgs) -> Result<(), Failure> {
     let files = [("adm", model.dataset), ("acf", model.commands)];
     let files = files.map(|(ending, text)| (folder.join(format!("{}.{ending}", model.name)), text));
-    if let Some((file, _)) = files.iter().find(|(file, _)| file.exists()) {
-        let message = format!("{} exists already", file.display());
-        return Err(Diagnostic::error("file_unwritable", message).help("take another folder"));
-    }
+    writing.check(files.iter().map(|(file, _)| file))?;
     for (file, text) in files {
-        cognate::results::write_text(&file, text)?;
-        super::remark(format!("wrote {}", file.display()));
+        writing.text(&file, text)?;
+        super::remark(format!("wrote {}", disk::text(&file)));
     }
     Ok(())
 }

@@ -4,11 +4,13 @@ pub mod text;
 
 use super::run::{Job, has_commands, script_with, timed_read};
 use super::setup::{Asked, loads_acting};
-use super::{Exit, Failure, Outcome, complain_in_files, draw, moved, remark, say};
+use super::{Exit, Failure, Outcome, complain_in_files, draw, moved, piped, remark, say};
+use crate::writing::WritingArgs;
 use cognate::analysis::verify::{Verification, verify};
 use cognate::dataset::Dataset;
 use cognate::dataset::command::{Command, Step};
 use cognate::diagnostic::{Diagnostic, Error, Severity};
+use cognate::disk;
 use cognate::model::Model;
 use cognate::results::{Loads, json};
 use std::path::{Path, PathBuf};
@@ -23,14 +25,19 @@ Examples:
   cognate verify four_bar.adm --draw four_bar.svg
   cognate verify robot.acf --json")]
 pub struct Args {
-    /// Dataset (.adm), or command file (.acf): then the model as it is before the first simulation
+    /// Dataset (.adm), or command file (.acf): then the model as it is before the first simulation;
+    /// - reads a dataset from standard input
+    #[arg(value_parser = piped::model())]
     model: PathBuf,
     /// Print the findings as JSON on standard output
     #[arg(long)]
     json: bool,
-    /// Draw the mechanism (.svg, .png, .pdf); what fixes the same twice stands out
+    /// Draw the mechanism (.svg, .png, .pdf); what fixes the same twice stands out [default: no
+    /// picture]
     #[arg(long, value_name = "FILE")]
     draw: Option<PathBuf>,
+    #[command(flatten)]
+    writing: WritingArgs,
 }
 
 /// Counts the freedoms of a model and prints the findings.
@@ -52,7 +59,7 @@ pub fn run(args: &Args) -> Outcome {
     }
     complain_in_files(&doubted);
     if let Some(file) = args.draw.as_ref().filter(|_| found.inconsistent.is_empty()) {
-        draw_redundant(model, &dataset, &found, file)?;
+        draw_redundant(model, &dataset, &found, (file, args.writing))?;
     }
     if found.inconsistent.is_empty() {
         return Ok(Exit::Done);
@@ -71,12 +78,15 @@ fn draw_redundant(
     model: Model,
     dataset: &Dataset,
     found: &Verification,
-    file: &Path,
+    file: (&Path, WritingArgs),
 ) -> Result<(), Failure> {
     let redundant = found.dependent.iter();
     let elements = redundant.flat_map(|d| d.fixed_by.iter().copied().chain([d.element]));
-    let folder = dataset.source.file.as_deref().map(Path::new);
-    let folder = folder.and_then(Path::parent).map(Path::to_path_buf);
+    let source = dataset.source.file.as_deref().map(disk::path);
+    let folder = source
+        .as_deref()
+        .and_then(Path::parent)
+        .map(Path::to_path_buf);
     let folders = folder.into_iter().collect();
     let assembled = moved::assembled(model, "verify", folders);
     let moved = assembled.map_err(|errors| Failure::in_model(dataset, errors))?;

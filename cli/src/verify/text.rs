@@ -2,6 +2,7 @@
 //! elements are given once.
 
 use cognate::analysis::verify::{Advice, Dependent, Undetermined, Verification, listed};
+use cognate::diagnostic::counted;
 use cognate::model::{ElementId, Model};
 use std::fmt::Write;
 
@@ -34,7 +35,10 @@ pub fn of(v: &Verification, model: &Model) -> String {
         line(format!("{:5}  {masses}", v.point_masses));
     }
     for (what, n, equations) in &v.counted {
-        line(format!("{n:5}  {what}, {equations} equations"));
+        line(format!(
+            "{n:5}  {what}, {}",
+            counted(*equations, "equation")
+        ));
     }
     line(format!("Gruebler count: {}", v.gruebler));
     let Some(freedom) = v.freedom else {
@@ -93,8 +97,8 @@ fn redundant(all: &[Dependent], called: Called<'_>) -> Vec<String> {
         (rotations, first.fixed_by.len() == 1, first.only_here)
     };
     let mut lines = vec![format!(
-        "{} redundant equations; --json tells of each what fixes it already",
-        all.len()
+        "{}; --json tells of each what fixes it already",
+        counted(all.len(), "redundant equation")
     )];
     for (first, group) in groups(&by_element, |a, b| kind(a) == kind(b)) {
         let mut others: Vec<String> = group[1..]

@@ -1,7 +1,17 @@
 //! Eigenvalues and mode shapes of a linear system.
 //!
 //! Eigenvalues are those of the balanced matrix, so that slow modes keep their digits beside fast
-//! ones. Shapes come from inverse iteration, `(A − λ') x ← x` with λ' beside λ; those of equal
+//! ones. Rounding δA of the matrix moves them by
+//!
+//! ```text
+//! |δλ| ≤ κ ‖δA‖,  κ = |y||x|/|yᴴx|      A x = λ x,  yᴴA = λ yᴴ                         (1)
+//! ```
+//!
+//! A free motion has two eigenvalues of zero with one shape: κ is infinite, rounding parts them by
+//! its root, and they look like a slow swing or a slow growth. Those that are no more than (1) are
+//! zero.
+//!
+//! Shapes come from inverse iteration, `(A − λ') x ← x` with λ' beside λ; those of equal
 //! eigenvalues are kept apart.
 
 use super::{Mode, PartShape, Small, Wanted};
@@ -19,6 +29,12 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 /// Inverse iterations: each takes away all but a rounding of the other modes.
 const INVERSE_ITERATIONS: usize = 4;
+
+/// Rounding of the entries of A, relative to its norm: they come out of a factorization of masses.
+const ROUNDING: f64 = 1e3 * f64::EPSILON;
+/// Size of an eigenvalue, relative to the norm of A, above which it is not that of a free motion:
+/// rounding parts three equal ones by its cubic root.
+const SURELY_NOT_FREE: f64 = 1e-4;
 
 /// Returns the eigenvalues of A by size, one of each conjugate pair, with their shapes.
 pub(super) fn modes(
@@ -42,9 +58,16 @@ pub(super) fn modes(
     })?;
     let norm = balanced.norm();
     for v in &mut values {
+        let size = v.norm();
+        if size < SURELY_NOT_FREE * norm && is_rounding(&balanced, *v, size) {
+            *v = Complex::new(0.0, 0.0);
+        }
         // a real one that has been perturbed into a pair by less than rounding stays as it is
         if v.im.abs() < 1e-14 * v.norm() {
             v.im = 0.0;
+        }
+        if v.re.abs() < ROUNDING * v.im.abs() {
+            v.re = 0.0;
         }
     }
     values.retain(|v| v.im >= 0.0);
@@ -89,6 +112,22 @@ pub(super) fn eigenvalues(balanced: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> 
     let sweeps = 100 * balanced.nrows().max(30);
     let schur = Schur::try_new(balanced.clone(), f64::EPSILON, sweeps)?;
     Some(schur.complex_eigenvalues().iter().copied().collect())
+}
+
+/// Returns whether rounding of a balanced matrix may make a part of an eigenvalue so large (1).
+pub(super) fn is_rounding(balanced: &DMatrix<f64>, value: Complex<f64>, part: f64) -> bool {
+    let norm = balanced.norm();
+    let least = ROUNDING * norm;
+    if part <= least {
+        return true;
+    }
+    let right = eigenvector(balanced, value, norm, &[]);
+    let left = eigenvector(&balanced.transpose(), value.conj(), norm, &[]);
+    let (Some(right), Some(left)) = (right, left) else {
+        return true;
+    };
+    // both are of length one
+    part * left.dotc(&right).norm() <= least
 }
 
 /// Finds an eigenvector by inverse iteration, apart from those found before for the same value.

@@ -124,6 +124,7 @@ impl Session {
             skip: self.options.skip.clone(),
             zero_user: self.options.zero_user,
             max_steps: self.options.max_steps,
+            named_only: true,
             ..Options::default()
         }
     }

@@ -50,15 +50,21 @@ impl Session {
     /// # Errors
     /// Closures under names that no `USER(…)` of the model has.
     pub(super) fn check_closures(&self) -> Result<(), Vec<Diagnostic>> {
-        let unused = |hook: &&Hook| {
-            let name = hook.as_name();
-            let all = self.model.formulas();
-            !(all.iter()).any(|owned| name.stands_for(owned.element, owned.formula))
-        };
-        let wrong: Vec<Diagnostic> = (self.hooks.iter().filter(unused))
+        let unused = self
+            .hooks
+            .iter()
+            .filter(|hook| !self.computes_something(hook));
+        let wrong: Vec<Diagnostic> = unused
             .map(|hook| computes_nothing(&self.model, &hook.name))
             .collect();
         if wrong.is_empty() { Ok(()) } else { Err(wrong) }
+    }
+
+    /// Returns whether a closure stands for a `USER(…)` of the model.
+    pub(super) fn computes_something(&self, hook: &Hook) -> bool {
+        let name = hook.as_name();
+        let all = self.model.formulas();
+        (all.iter()).any(|owned| name.stands_for(owned.element, owned.formula))
     }
 
     /// Checks that the model has the elements that alone are to be recorded, before there are rows.

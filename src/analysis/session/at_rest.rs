@@ -68,6 +68,7 @@ impl Session {
         self.run.begin(kind);
         let found = self.equilibria(system, &times, program, watch);
         let (seconds, translation) = phase.elapsed();
+        let processor = phase.processor_seconds(seconds);
         self.run.record.seconds.translate += translation;
         self.warn_of_gaps();
         let stopped = found.failed;
@@ -84,6 +85,7 @@ impl Session {
             outputs: found.count,
             method: found.method,
             solve_seconds: seconds,
+            solve_processor_seconds: processor,
             counts: counts(&found.stats, Limited::default()),
             ..results::Simulation::new(kind, span.start)
         };

@@ -5,21 +5,22 @@
 //! (`sets.rs`).
 
 use super::Options;
+use super::catalogue::{self, Catalogue, Names, Taken, expression_of};
 use super::requests::{components, request_sets};
 use super::selection::{Omission, Selection, omits};
 use super::sets::{self, Contents, Piece, SETS, Source};
 use super::shown::{Origin, Unit, Values, What, origins};
 use crate::expr::dimension::Dimension;
 use crate::expr::program::{Input, Program, Work};
-use crate::model::{ElementId, ElementKind, Formula, Model, Part, Place, RequestKind, Text};
-use crate::results::{Component, Entity, Requested, Run, Units};
+use crate::model::{ElementId, ElementKind, Formula, Labels, Model, Part, RequestKind, Text};
+use crate::results::{self, Entity, Requested, Run, Units};
 use crate::scalar::Scalar;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::{Equations, Unsupported};
 use crate::scene::layout::Layout;
 use crate::scene::programs::record_with_complaints;
 use crate::scene::recorder::Recorder;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A column as it is evaluated.
 #[derive(Clone, Debug)]
@@ -43,6 +44,10 @@ pub struct Columns {
     wished: Vec<usize>,
     /// texts of the choice before, which have been read
     known: Vec<(String, Text)>,
+    /// names so far, while columns are declared
+    names: Names,
+    /// nothing was asked for: they are those of every run
+    by_default: bool,
 }
 
 /// Returns the unit of what an expression yields, where it is a single measure.
@@ -113,6 +118,7 @@ impl Columns {
     ) -> Self {
         let options = Options {
             full,
+            named_only: true,
             ..Options::default()
         };
         Self::chosen(
@@ -140,15 +146,19 @@ impl Columns {
         run.add_column("time", run.units.time.clone());
         let mut this = Self {
             known: before.extra,
+            names: Names::of(model),
             ..Self::default()
         };
+        let is_asked = !user.is_empty() || !selection.only.is_empty();
+        let unasked = !is_asked && !selection.full && !asks_for_requests(model, computed);
+        let selection = &match unasked && selection.by_default {
+            true => selection.of_everything(model),
+            false => *selection,
+        };
         this.parts(model, run, selection);
-        let mut table = vec![0];
-        for text in user {
-            table.push(this.text(run, text.clone(), text.as_str().into(), None));
-        }
+        let mut requested = Vec::new();
         if !omits(model, Omission::Requests) {
-            this.requests(model, run, &mut table, computed);
+            this.requests(model, run, &mut requested, computed);
         }
         if selection.full {
             let first = run.columns.len();
@@ -157,12 +167,56 @@ impl Columns {
                 this.wished.extend(first..run.columns.len());
             }
         }
-        // without wishes of its own the table has everything that RESULTS asks for
-        let has_own = table.len() > 1 || !selection.full;
+        let mut table = vec![0];
+        let asked = user.iter();
+        let mut catalogue = None;
+        for text in asked {
+            let column = this.user(model, run, text, &mut catalogue);
+            table.push(column);
+        }
+        table.extend(requested);
+        // without wishes of its own the table has everything that is recorded
+        let has_own = table.len() > 1 || !(selection.full || unasked && selection.by_default);
         table.append(&mut this.wished);
+        let mut shown = BTreeSet::new();
+        table.retain(|column| shown.insert(*column));
         run.table = if has_own { table } else { Vec::new() };
-        this.known = Vec::new();
+        (this.known, this.names) = (Vec::new(), Names::default());
+        this.by_default = unasked && selection.by_default;
         this
+    }
+
+    /// Adds a column that a user asks for, unless it is there; returns its index.
+    fn user(
+        &mut self,
+        model: &Model,
+        run: &mut Run,
+        text: &str,
+        catalogue: &mut Option<Catalogue>,
+    ) -> usize {
+        if let Some(there) = run.columns.iter().position(|column| column.name == text) {
+            return there;
+        }
+        if let Some(expression) = expression_of(model, text) {
+            return self.text(run, text.to_owned(), expression, None);
+        }
+        let catalogue = catalogue.get_or_insert_with(|| Catalogue::of(model, &run.units));
+        match catalogue.find(text) {
+            Ok((unit, catalogue::Piece::Text(expression))) => {
+                let column = self.text(run, text.to_owned(), expression, None);
+                run.columns[column].unit = unit;
+                column
+            }
+            Ok((unit, catalogue::Piece::Scene(what))) => {
+                if let What::Body { id, centre, .. } = what {
+                    let is_known = self.bodies.iter().any(|body| body.0 == id);
+                    self.bodies.extend((!is_known).then_some((id, centre)));
+                }
+                self.push(run, text.to_owned(), unit, what)
+            }
+            // the mistake is told where the column is compiled
+            Err(_) => self.text(run, text.to_owned(), text.into(), None),
+        }
     }
 
     fn push(&mut self, run: &mut Run, name: String, unit: String, what: What) -> usize {
@@ -170,6 +224,7 @@ impl Columns {
             what,
             request: None,
         });
+        let name = self.names.column(name);
         run.add_column(name, unit)
     }
 
@@ -194,10 +249,10 @@ impl Columns {
         let all: Vec<(ElementId, &Part)> =
             (model.bodies().filter(moving).filter(is_shown)).collect();
         let first = run.entities.len();
-        for &(id, part) in &all {
-            let entity = name_of(&part.place, id);
+        for &(id, _) in &all {
+            let entity = self.names.element(model, id);
             run.entities.push(Entity {
-                name: format!("{entity}_XFORM"),
+                name: self.names.set(format!("{entity}_XFORM")),
                 ..entity_of(entity, "Part", id)
             });
         }
@@ -222,7 +277,7 @@ impl Columns {
                     if selection.names(id) {
                         self.wished.push(column);
                     }
-                    run.entities[first + k].components.push(Component {
+                    run.entities[first + k].components.push(results::Component {
                         name: (*component).into(),
                         column,
                     });
@@ -251,8 +306,8 @@ impl Columns {
             (level == 0 || selection.body_rates) && !omits(model, left_out)
         };
         for (level, ((set, names), _)) in levels.filter(|(level, (_, o))| asked(*level, *o)) {
-            let entity = name_of(&part.place, id);
-            let name = format!("{entity}_{set}");
+            let entity = self.names.element(model, id);
+            let name = self.names.set(format!("{entity}_{set}"));
             let mut components = Vec::new();
             for (component, of) in names.iter().enumerate() {
                 let what = What::Body {
@@ -267,7 +322,7 @@ impl Columns {
                     self.wished.push(column);
                 }
                 let name = (*of).to_owned();
-                components.push(Component { name, column });
+                components.push(results::Component { name, column });
             }
             run.entities.push(Entity {
                 name,
@@ -281,10 +336,10 @@ impl Columns {
     /// Adds the sets of all other elements: variables of joints, the table, the energies.
     fn elements(&mut self, model: &Model, run: &mut Run, selection: &Selection<'_>) {
         if !omits(model, Omission::Displacements) {
-            for (&n, joint) in &model.joints {
+            for &n in model.joints.keys() {
                 let id = ElementKind::Joint.id(n);
                 if selection.has(id) {
-                    let name = format!("{}_VARIABLES", name_of(&joint.place, id));
+                    let name = format!("{}_VARIABLES", self.names.element(model, id));
                     let pieces = sets::joint_variables(model, n);
                     self.set(run, entity_of(name, "Joint_Variables", id), pieces);
                 }
@@ -296,10 +351,12 @@ impl Columns {
         for set in of_table {
             for n in model.numbers(set.kind) {
                 let id = set.kind.id(n);
-                let place = model.element(id).map(|element| element.place());
-                let name = place.map_or_else(String::new, |place| name_of(place, id));
                 let pieces = sets::pieces(model, selection, set, n);
-                self.set(run, entity_of(name, set.word, id), pieces);
+                if pieces.is_empty() {
+                    continue;
+                }
+                let name = self.names.element(model, id);
+                self.set(run, entity_of(name, set.word(), id), pieces);
             }
         }
         if selection.only.is_empty() {
@@ -315,6 +372,10 @@ impl Columns {
 
     /// Adds a set of results, if it has components.
     fn set(&mut self, run: &mut Run, mut entity: Entity, pieces: Vec<Piece>) {
+        if pieces.is_empty() {
+            return;
+        }
+        entity.name = self.names.set(entity.name);
         for Piece { name, unit, source } in pieces {
             let title = format!("{}.{name}", entity.name);
             let column = match source {
@@ -324,11 +385,9 @@ impl Columns {
                     self.push(run, title, unit, what)
                 }
             };
-            entity.components.push(Component { name, column });
+            entity.components.push(results::Component { name, column });
         }
-        if !entity.components.is_empty() {
-            run.entities.push(entity);
-        }
+        run.entities.push(entity);
     }
 
     /// Declares the columns of all requests, which are those of the table.
@@ -341,7 +400,8 @@ impl Columns {
     ) {
         // the requests of a MREQUEST have the numbers behind those of all others
         let mut last = model.requests.keys().copied().max().unwrap_or(0);
-        for set in request_sets(model) {
+        for mut set in request_sets(model, &self.names.labels) {
+            set.name = self.names.set(set.name);
             let number = match set.id.kind {
                 ElementKind::Request => set.id.number,
                 _ => {
@@ -351,13 +411,14 @@ impl Columns {
             };
             let by_closure = matches!(*set.kind, RequestKind::User(_));
             let mut entity = entity_of(set.name.clone(), "Request", set.id);
-            let mut requested = Requested::new(number, &set.kind);
+            let (mut requested, mut own) = (Requested::new(number, &set.kind), Taken::default());
             for component in components(model, &set, computed) {
                 let given = set.cnames.get(component.place - 1);
                 if given.is_some_and(String::is_empty) {
                     continue;
                 }
                 let name = given.cloned().unwrap_or(component.name);
+                let name = own.take(name);
                 let title = format!("{}.{name}", set.name);
                 let column = if by_closure {
                     let (id, place) = (set.id.number, component.place - 1);
@@ -374,7 +435,7 @@ impl Columns {
                 }
                 requested.columns[component.place - 1] = Some(column);
                 table.push(column);
-                entity.components.push(Component { name, column });
+                entity.components.push(results::Component { name, column });
             }
             if !entity.components.is_empty() {
                 run.entities.push(entity);
@@ -438,18 +499,23 @@ impl Columns {
             .collect()
     }
 
-    /// Adds an expression after all other columns, shown by tables.
-    pub fn add(&mut self, run: &mut Run, expression: &str) {
+    /// Adds a column after all others, shown by tables.
+    pub fn add(&mut self, model: &Model, run: &mut Run, expression: &str) {
         let shown = run.table_columns();
-        let column = self.text(run, expression.to_string(), expression.into(), None);
+        let column = self.user(model, run, expression, &mut None);
         run.table = shown;
         run.table.push(column);
     }
 
     /// Takes the last column away again, which [`add`](Self::add) added.
     pub fn take_back(&mut self, run: &mut Run) {
-        self.shown.pop();
-        self.extra.pop();
+        if let Some(Shown {
+            what: What::Text(_),
+            ..
+        }) = self.shown.pop()
+        {
+            self.extra.pop();
+        }
         run.columns.pop();
         run.table.pop();
     }
@@ -458,8 +524,23 @@ impl Columns {
     pub fn last_alone(&self) -> Self {
         Self {
             shown: self.shown.last().cloned().into_iter().collect(),
+            origins: self.origins.clone(),
             ..Self::default()
         }
+    }
+
+    /// Returns how a column is computed; `None`: it is time.
+    pub(super) fn piece(&self, column: usize) -> Option<catalogue::Piece> {
+        let shown = self.shown.get(column.checked_sub(1)?)?;
+        Some(match &shown.what {
+            What::Text(k) => catalogue::Piece::Text(self.extra.get(*k)?.1.clone()),
+            what => catalogue::Piece::Scene(what.clone()),
+        })
+    }
+
+    /// Returns whether they are recorded only because nothing was asked for.
+    pub(super) fn are_by_default(&self) -> bool {
+        self.by_default
     }
 
     /// Number of columns.
@@ -471,6 +552,13 @@ impl Columns {
     pub fn is_empty(&self) -> bool {
         self.shown.is_empty()
     }
+}
+
+/// Returns whether a model has requests that are computed.
+fn asks_for_requests(model: &Model, computed: &dyn Fn(u32, &Formula) -> bool) -> bool {
+    let sets = request_sets(model, &Labels::default());
+    let is_computed = |set: &_| !components(model, set, computed).is_empty();
+    !omits(model, Omission::Requests) && sets.iter().any(is_computed)
 }
 
 /// Name of the set of the energies of the model.
@@ -576,12 +664,6 @@ pub(super) fn append_with<'a>(
             n_rows = 0;
         }
     }
-}
-
-/// The name given in the dataset, or `KEYWORD_id`.
-pub fn name_of(place: &Place, id: ElementId) -> String {
-    let name = place.name.clone();
-    name.unwrap_or_else(|| format!("{}_{}", id.kind, id.number))
 }
 
 #[cfg(test)]

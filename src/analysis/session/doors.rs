@@ -1,13 +1,15 @@
 //! Doors of a session for programs: simulations without hooks, rows as they come, columns that are
 //! named whenever they are wanted, and the way back to the start.
 
+use super::catalogue::{check_column, expression_of};
 use super::kept::Starts;
 use super::{Analysis, Gaps, MetStiffness, Session};
 use crate::analysis::system::closures::Hook;
 use crate::analysis::watch::Unwatched;
 use crate::analysis::work_limit::WorkLimit;
 use crate::diagnostic::{Cause, Diagnostic, Error};
-use crate::model::Text;
+#[cfg(doc)]
+use crate::model::Model;
 use crate::results::{Run, Status};
 
 impl Session {
@@ -21,7 +23,18 @@ impl Session {
 
     /// Computes what `USER(…)` stands for by a closure that is shared; see
     /// [`register`](Self::register).
-    pub fn register_hook(&mut self, hook: Hook) {
+    pub fn register_hook(&mut self, mut hook: Hook) {
+        for input in &mut hook.inputs {
+            // a mistake in a name is told where the input is compiled
+            if let Ok(numbered) = self.model.numbered(input) {
+                *input = numbered.text;
+            }
+        }
+        if !self.computes_something(&hook)
+            && let Ok(id) = self.model.find_element(&hook.name)
+        {
+            hook.name = id.to_string();
+        }
         let is_other = |other: &Hook| !other.name.eq_ignore_ascii_case(&hook.name);
         self.hooks.retain(is_other);
         self.hooks.push(hook);
@@ -59,7 +72,12 @@ impl Session {
         }));
     }
 
-    /// Adds a column: an expression of the function language, by which the run then knows it.
+    /// Adds a column, by whose text the run then knows it: an expression of the function language,
+    /// in which elements may have their names (`DX(slider.cm, ground)`, see [`Model::numbered`]),
+    /// or a component of a set of results (`crank_bearing.FX`).
+    ///
+    /// A session that is asked for no column records everything, as RESULTS does; with the first
+    /// column it records what it is asked for.
     ///
     /// After a simulation its values in the rows so far are computed from their states, which
     /// [`Options::keep_states`](super::Options::keep_states) keeps.
@@ -68,10 +86,19 @@ impl Session {
     /// A mistake in the expression; after a simulation also rows whose states have not been kept, a
     /// model that has been changed since, and expressions with a past.
     pub fn add_column(&mut self, expression: &str) -> Result<(), Error> {
-        if self.run.find(expression).is_some() {
+        let is_there = self.run.find(expression).is_some();
+        if is_there && !(self.columns.are_by_default() && self.run.rows() == 0) {
             return Ok(());
         }
-        Text::from(expression).expression()?;
+        match expression_of(&self.model, expression) {
+            Some(text) => drop(text.expression()?),
+            None => {
+                let wrong = check_column(&self.model, expression);
+                if !wrong.is_empty() {
+                    return Err(wrong.into());
+                }
+            }
+        }
         if self.run.rows() > 0 {
             return self.add_late_column(expression);
         }

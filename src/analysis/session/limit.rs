@@ -9,7 +9,7 @@ use crate::analysis::time::output::Output;
 use crate::analysis::trajectory::Trajectory;
 use crate::analysis::watch::Watch;
 use crate::analysis::work_limit::{Limited, WorkLimit};
-use crate::diagnostic::{Diagnostic, Error};
+use crate::diagnostic::{Diagnostic, Error, counted};
 use crate::numeric::{Ode, Stats};
 use crate::results::{self, Kind, Status};
 use crate::scene::layout::Layout;
@@ -150,7 +150,8 @@ impl fmt::Display for Reached {
             Reached::Rest { at, steps } => {
                 write!(
                     f,
-                    "in the search for an equilibrium at time {at}, after {steps} steps"
+                    "in the search for an equilibrium at time {at}, after {}",
+                    counted(*steps, "step")
                 )
             }
             Reached::Motion {
@@ -164,7 +165,8 @@ impl fmt::Display for Reached {
             } => {
                 write!(
                     f,
-                    "at time {at} of {end} with {method}, after {steps} steps, the last of {step:.3e}"
+                    "at time {at} of {end} with {method}, after {}, the last of {step:.3e}",
+                    counted(*steps, "step")
                 )?;
                 if let Some(slow) = slow {
                     write!(f, "; {slow}")?;

@@ -10,6 +10,7 @@ mod at_rest;
 pub mod beginning;
 mod begun_rates;
 mod carried;
+mod catalogue;
 pub mod columns;
 mod companion;
 mod doors;
@@ -57,6 +58,7 @@ use crate::scene::contacts::Shell;
 use crate::scene::equations::Unsupported;
 use crate::scene::unknown::UnknownId;
 use carried::Carried;
+pub use catalogue::check_column;
 use companion::{Integrated, Pace};
 use kept::{Kept, Starts};
 pub use limit::Activity;
@@ -94,10 +96,15 @@ pub struct Options {
     pub method: Option<String>,
     /// how often to solve, for timing
     pub repeat: usize,
-    /// further columns
+    /// further columns: expressions, in which elements may have their names
+    /// (`DX(slider.cm, ground)`), and components of sets of results (`crank_bearing.FX`)
     pub columns: Vec<String>,
-    /// sets of results of all elements, as RESULTS asks for them
+    /// sets of results of all elements, as RESULTS asks for them. A run that is asked for nothing
+    /// (no column, no element in `only`, no REQUEST) has them as well, or the places of bodies
+    /// alone where there are more than 400 of them
     pub full: bool,
+    /// record what is asked for alone, also where that is nothing but time
+    pub named_only: bool,
     /// positions and angles of parts, whatever else is recorded
     pub frames: bool,
     /// sets of eight velocities and eight accelerations of the bodies' centres of mass
@@ -280,10 +287,11 @@ impl Session {
 
     /// Computes what `USER(…)` stands for by a closure.
     ///
-    /// `name` is an element ("SFORCE/3"), the text of its ROUTINE, or the first number of
-    /// `USER(…)`; `inputs` are expressions of the function language whose values the closure is
-    /// given, in this order. They may not depend on what it computes. See [`closures::Law`]
-    /// for what it has to fill in. Of several that stand for one `USER(…)` the last counts.
+    /// `name` is an element ("SFORCE/3", or by its name), the text of its ROUTINE, or the first
+    /// number of `USER(…)`; `inputs` are expressions of the function language whose values the
+    /// closure is given, in this order. They may not depend on what it computes. See
+    /// [`closures::Law`] for what it has to fill in. Of several that stand for one `USER(…)` the
+    /// last counts.
     pub fn register(
         &mut self,
         name: &str,

@@ -33,6 +33,7 @@ impl Session {
         let record = &mut self.run.record;
         record.counts += simulation.counts;
         record.seconds.solve += simulation.solve_seconds;
+        record.solve_processor_seconds += simulation.solve_processor_seconds;
         record.method.clone_from(&simulation.method);
         record.status = simulation.status;
         record.stop_code = simulation.stop_code;

@@ -16,8 +16,7 @@ use crate::analysis::time::{dynamics, kinematics};
 use crate::analysis::trajectory::{Ended, Takeover, Trajectory};
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
-use crate::analysis::work_limit::ProcessorClock;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, counted};
 use crate::expr::program::Program;
 use crate::model::ElementKind;
 use crate::numeric::{self, Ode, noise};
@@ -50,7 +49,7 @@ impl Session {
         let settles = self.settles(system);
         let chosen = system.configuration.active.clone();
         let mut seen = self.begin_rows(kind, program, (system, span.end));
-        let (mut trajectory, seconds) =
+        let (mut trajectory, [seconds, processor]) =
             self.timed(system, (kind, span), &settings, (&mut seen, watch))?;
         // its results
         let phase = Phase::begin();
@@ -100,6 +99,7 @@ impl Session {
             outputs: trajectory.t.len(),
             method: methods(&trajectory),
             solve_seconds: seconds,
+            solve_processor_seconds: processor,
             counts: counts(&trajectory.stats, trajectory.limited),
             ..results::Simulation::new(kind, span.start)
         };
@@ -137,7 +137,8 @@ impl Session {
         self.run.log.push(begin);
     }
 
-    /// Integrates as often as the options say; the last trajectory, and the median of the seconds.
+    /// Integrates as often as the options say; the last trajectory, the median of the times that
+    /// passed, and the mean of the processor times, in s.
     /// Rows become results meanwhile where somebody receives them.
     ///
     /// # Errors
@@ -148,7 +149,7 @@ impl Session {
         (kind, span): (Kind, Span),
         settings: &Options,
         (seen, watch): (&mut Seen, &mut dyn Watch),
-    ) -> Result<(Trajectory, f64), Vec<Diagnostic>> {
+    ) -> Result<(Trajectory, [f64; 2]), Vec<Diagnostic>> {
         let outputs = span.output.times(span.start, span.end);
         let settings = &Options {
             may_part: kind == Kind::Dynamic && self.may_part(system),
@@ -168,7 +169,7 @@ impl Session {
         };
         let mut seconds = Vec::new();
         let repeat = self.options.repeat.max(1);
-        let processor = (repeat > 1).then(ProcessorClock::start);
+        let mut processor = 0.0;
         let mut trajectory = Trajectory::default();
         for k in 1..=repeat {
             if !trajectory.selections.is_empty() {
@@ -198,17 +199,16 @@ impl Session {
             }
             let (own, translation) = phase.elapsed();
             let spent = trajectory.energy.spent.as_secs_f64() + seen.seconds;
-            seconds.push((own - taken - spent).max(0.0));
+            let solving = (own - taken - spent).max(0.0);
+            processor += phase.processor_seconds(solving);
+            seconds.push(solving);
             self.run.record.seconds.translate += translation;
             self.run.record.seconds.evaluate += spent;
         }
-        if let Some(clock) = processor {
-            let mean = clock.seconds() / seconds.len() as f64;
-            *self.run.record.repeated_seconds.get_or_insert(0.0) += mean;
-        }
+        let mean = processor / seconds.len() as f64;
         seconds.sort_by(f64::total_cmp);
         let median = seconds[seconds.len() / 2];
-        Ok((trajectory, median))
+        Ok((trajectory, [median, mean]))
     }
 
     /// Lets mechanisms that nothing couples go on each by itself to the end, as far as that pays;
@@ -277,7 +277,8 @@ impl Session {
         if let Some((method, steps)) = trajectory.downstream {
             let n = system.scene.layout.n_downstream;
             let message = format!(
-                "states that the mechanism does not read, integrated beside it: {n}, by {steps} steps of {method}"
+                "states that the mechanism does not read, integrated beside it: {n}, by {} of {method}",
+                counted(steps, "step")
             );
             self.run.log.push(Event::Info(message));
         }

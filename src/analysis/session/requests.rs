@@ -3,7 +3,7 @@
 //! A MREQUEST stands for a REQUEST of each of its elements.
 
 use super::selection::output_says;
-use crate::model::{ElementId, ElementKind, Formula, Model, RequestKind, Text};
+use crate::model::{ElementId, ElementKind, Formula, Labels, Model, RequestKind, Text};
 use std::borrow::Cow;
 
 /// A component of a REQUEST.
@@ -26,15 +26,14 @@ pub(super) struct RequestSet<'m> {
 }
 
 /// Returns the sets of all requests that are switched on.
-pub(super) fn request_sets(model: &Model) -> Vec<RequestSet<'_>> {
+pub(super) fn request_sets<'m>(model: &'m Model, labels: &Labels) -> Vec<RequestSet<'m>> {
     let single = model.active(ElementKind::Request, &model.requests);
     let mut all: Vec<RequestSet<'_>> = single
         .map(|(n, request)| {
             let id = ElementKind::Request.id(n);
-            let named = request.results_name.clone();
             RequestSet {
                 id,
-                name: named.unwrap_or_else(|| super::columns::name_of(&request.place, id)),
+                name: labels.name(model, id),
                 kind: Cow::Borrowed(&request.kind),
                 cnames: &request.cnames,
             }
@@ -42,10 +41,9 @@ pub(super) fn request_sets(model: &Model) -> Vec<RequestSet<'_>> {
         .collect();
     for (n, many) in model.active(ElementKind::Mrequest, &model.many_requests) {
         let id = ElementKind::Mrequest.id(n);
-        let own = super::columns::name_of(&many.place, id);
+        let own = labels.name(model, id);
         for (element, kind) in many.requests(model) {
-            let place = model.element(element).map(|e| e.place());
-            let name = place.map_or_else(String::new, |p| super::columns::name_of(p, element));
+            let name = labels.name(model, element);
             all.push(RequestSet {
                 id,
                 name: format!("{own}.{name}"),

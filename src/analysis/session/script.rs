@@ -80,7 +80,7 @@ fn found(session: &Session, name: &str) -> Result<Vec<u8>, Diagnostic> {
     let here = std::path::PathBuf::from(".");
     let folders = session.folders.iter().chain(std::iter::once(&here));
     let mut files = folders.flat_map(|folder| [folder.join(&file), folder.join(&given)]);
-    let bytes = files.find_map(|f| disk::read(f).ok());
+    let bytes = files.find_map(|f| disk::read(&f).ok());
     bytes.ok_or_else(|| {
         Diagnostic::error("cannot_open", format!("there is no file {file}"))
             .help("SAVE/SYSTEM=file writes one, beside the results")

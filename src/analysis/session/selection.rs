@@ -1,7 +1,7 @@
 //! The choice of what is recorded: RESULTS and OUTPUT of the dataset, and the wishes of the user.
 
 use super::Options;
-use super::sets::why_without;
+use super::sets::{SETS, why_without};
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::{ElementId, ElementKind, Model, SettingsStatement};
 
@@ -82,6 +82,11 @@ fn has_results(kind: ElementKind) -> Result<(), String> {
     }
 }
 
+fn kinds_with_results() -> Vec<ElementKind> {
+    let sets = SETS.iter().map(|set| set.kind);
+    sets.filter(|kind| why_without(*kind).is_none()).collect()
+}
+
 impl Chosen {
     /// Returns the choice with the element of a model in the place of its name.
     ///
@@ -93,7 +98,11 @@ impl Chosen {
             Self::Kind(_) => return Ok(self.clone()),
             Self::Element(id) if model.has(*id) => *id,
             Self::Element(id) => return Err(model.no_element(*id)),
-            Self::Called(name) => model.find_element(name)?,
+            // of several elements of a name those count that have results
+            Self::Called(name) => match model.find_of(&kinds_with_results(), name) {
+                Ok(id) => id,
+                Err(d) => model.find_element(name).map_err(|_| d)?,
+            },
         };
         match has_results(id.kind) {
             Ok(()) => Ok(Self::Element(id)),
@@ -121,9 +130,28 @@ pub(super) struct Selection<'a> {
     pub body_rates: bool,
     /// only these elements have sets; none: all have
     pub only: &'a [Chosen],
+    /// every element has its set where nothing is asked for
+    pub by_default: bool,
 }
 
+/// Elements with sets up to which a run that is asked for nothing records all of them.
+const MOST_BY_DEFAULT: usize = 400;
+
 impl Selection<'_> {
+    /// Returns the selection of a run that is asked for nothing: everything, as RESULTS has it; of
+    /// a model of very many elements, whose results would fill the memory, where its bodies are.
+    pub(super) fn of_everything(self, model: &Model) -> Self {
+        let kinds = SETS.iter().filter(|set| why_without(set.kind).is_none());
+        let n_sets: usize = kinds.map(|set| model.numbers(set.kind).len()).sum();
+        match n_sets <= MOST_BY_DEFAULT {
+            true => Self { full: true, ..self },
+            false => Self {
+                frames: true,
+                ..self
+            },
+        }
+    }
+
     /// Returns whether the user has chosen an element by name or kind: tables then show its sets.
     pub(super) fn names(&self, id: ElementId) -> bool {
         self.only.iter().any(|chosen| chosen.has(id))
@@ -152,6 +180,7 @@ impl Options {
             frames: self.frames,
             body_rates: self.body_rates,
             only: &self.only,
+            by_default: !self.named_only,
         }
     }
 }

@@ -18,6 +18,7 @@
 use super::selection::{Omission, Selection, omits};
 use super::shown::{ENERGIES, Unit, What};
 use crate::model::{Driven, ElementId, ElementKind, JointKind, Model};
+use crate::results;
 
 /// A group of components of a set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,8 +65,6 @@ pub(super) enum Contents {
 pub(super) struct Set {
     /// the kind of element
     pub kind: ElementKind,
-    /// the word for the kind in files
-    pub word: &'static str,
     /// its results
     pub contents: Contents,
 }
@@ -102,62 +101,63 @@ const TOUCHING: Contents = Groups(&[(Group::Action, O::Contacts), (Group::Touch,
 const DATA: Contents = No("others read it");
 const OWN_COLUMNS: Contents = No("its components are columns of its own");
 
-const fn set(kind: ElementKind, word: &'static str, contents: Contents) -> Set {
-    Set {
-        kind,
-        word,
-        contents,
+const fn set(kind: ElementKind, contents: Contents) -> Set {
+    Set { kind, contents }
+}
+
+impl Set {
+    /// Returns the word for the kind in files.
+    pub fn word(&self) -> &'static str {
+        results::word_of(self.kind)
     }
 }
 
 /// The table: all kinds of elements that are solved, in the order of their sets in files.
 pub(super) const SETS: &[Set] = &[
-    set(E::Part, "Part", Body),
-    set(E::PointMass, "Part", Body),
-    set(E::Joint, "Joint", REACTION),
-    set(E::Jprim, "Primitive_Joint", REACTION),
-    set(E::Motion, "Motion", DRIVE),
-    set(E::Coupler, "Coupler", COUPLING),
-    set(E::Gear, "Gear", REACTION),
-    set(E::Gcon, "General_Constraint", GENERAL),
-    set(E::Ptcv, "Point_Curve", CURVES),
-    set(E::Cvcv, "Curve_Curve", CURVES),
-    set(E::Sforce, "Single_Component_Force", FORCE),
-    set(E::Vforce, "Force_Vector", FORCE),
-    set(E::Vtorque, "Torque_Vector", FORCE),
-    set(E::Gforce, "General_Force", FORCE),
-    set(E::SpringDamper, "Spring_Damper", FORCE),
-    set(E::Bushing, "Bushing", FORCE),
-    set(E::Field, "Field", FORCE),
-    set(E::Beam, "Beam", FORCE),
-    set(E::Nforce, "Nforce", NODES),
-    set(E::Variable, "ADAMS_Variable", VALUE),
-    set(E::Diff, "Differential_Equation", STATE),
-    set(E::Lse, "Linear_State_Equation", SYSTEM),
-    set(E::Tfsiso, "Transfer_Function", SYSTEM),
-    set(E::Gse, "General_State_Equation", SYSTEM),
-    set(E::Pinput, "Plant_Input", ENTRIES),
-    set(E::Poutput, "Plant_Output", ENTRIES),
-    set(E::Friction, "Friction", SLIDING),
-    set(E::Contact, "Contact", TOUCHING),
+    set(E::Part, Body),
+    set(E::PointMass, Body),
+    set(E::Joint, REACTION),
+    set(E::Jprim, REACTION),
+    set(E::Motion, DRIVE),
+    set(E::Coupler, COUPLING),
+    set(E::Gear, REACTION),
+    set(E::Gcon, GENERAL),
+    set(E::Ptcv, CURVES),
+    set(E::Cvcv, CURVES),
+    set(E::Sforce, FORCE),
+    set(E::Vforce, FORCE),
+    set(E::Vtorque, FORCE),
+    set(E::Gforce, FORCE),
+    set(E::SpringDamper, FORCE),
+    set(E::Bushing, FORCE),
+    set(E::Field, FORCE),
+    set(E::Beam, FORCE),
+    set(E::Nforce, NODES),
+    set(E::Variable, VALUE),
+    set(E::Diff, STATE),
+    set(E::Lse, SYSTEM),
+    set(E::Tfsiso, SYSTEM),
+    set(E::Gse, SYSTEM),
+    set(E::Pinput, ENTRIES),
+    set(E::Poutput, ENTRIES),
+    set(E::Friction, SLIDING),
+    set(E::Contact, TOUCHING),
     set(
         E::Marker,
-        "Marker",
         No("its motion follows from that of its part: cognate motion"),
     ),
     set(
         E::Sensor,
-        "Sensor",
         No("the log tells when it acts; a REQUEST shows its function"),
     ),
-    set(E::Array, "Array", DATA),
-    set(E::Curve, "Curve", DATA),
-    set(E::Spline, "Spline", DATA),
-    set(E::String, "String", DATA),
-    set(E::Matrix, "Matrix", DATA),
-    set(E::Request, "Request", OWN_COLUMNS),
-    set(E::Mrequest, "Request", OWN_COLUMNS),
-    set(E::Graphics, "Graphics", No("it is drawn")),
+    set(E::Array, DATA),
+    set(E::Curve, DATA),
+    set(E::Spline, DATA),
+    set(E::String, DATA),
+    set(E::Matrix, DATA),
+    set(E::Request, OWN_COLUMNS),
+    set(E::Mrequest, OWN_COLUMNS),
+    set(E::Graphics, No("it is drawn")),
 ];
 
 /// Returns why elements of a kind have no results of their own; `None`: they have.

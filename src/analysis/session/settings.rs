@@ -5,7 +5,7 @@ use crate::analysis::system::System;
 use crate::analysis::system::implicit::Formulation;
 use crate::analysis::time::options::{self, Options};
 use crate::analysis::warning::RunWarning;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, counted};
 use crate::numeric;
 
 /// Permitted local error when nobody says.
@@ -48,9 +48,10 @@ impl Session {
         match run.columns.iter().find(|c| c.values.len() != n) {
             None => Ok(()),
             Some(c) => refuse(format!(
-                "the column {:?} of the results has {} values for {n} rows",
+                "the column {:?} of the results has {} for {}",
                 c.name,
-                c.values.len()
+                counted(c.values.len(), "value"),
+                counted(n, "row")
             )),
         }
     }

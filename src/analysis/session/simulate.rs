@@ -90,6 +90,7 @@ impl Session {
         let _looking = (self.options.keep_start).then(|| self.structures.look());
         // the system in its state, and which analysis moves it
         let (mut system, assembly, analysis) = self.begin(analysis, watch)?;
+        self.run.switch(&self.model.inactive);
         self.check_masses(&system, analysis)?;
         self.check_drives(&system, analysis, end)?;
         // what is told before it moves

@@ -81,7 +81,7 @@ impl Session {
             return late("the model has been changed since");
         }
         let before = self.run.columns.len();
-        self.columns.add(&mut self.run, expression);
+        self.columns.add(&self.model, &mut self.run, expression);
         match self.late_values() {
             Ok(values) => {
                 self.run.columns[before].values = values;

@@ -10,6 +10,7 @@
 
 use super::Settler;
 use super::point::Point;
+use crate::diagnostic::counted;
 use crate::numeric::pattern::Pattern;
 use crate::numeric::rank::{Rank, TOLERANCE};
 use crate::scalar::Scalar;
@@ -41,11 +42,10 @@ pub struct Stability {
 impl Stability {
     /// Writes them: "stable, indifferent in 2 directions".
     pub fn words(&self) -> String {
-        let directions = |n: usize| if n == 1 { "direction" } else { "directions" };
         match (self.unstable, self.neutral) {
             (0, 0) => "stable".into(),
-            (0, n) => format!("stable, indifferent in {n} {}", directions(n)),
-            (n, _) => format!("unstable in {n} {}", directions(n)),
+            (0, n) => format!("stable, indifferent in {}", counted(n, "direction")),
+            (n, _) => format!("unstable in {}", counted(n, "direction")),
         }
     }
 }

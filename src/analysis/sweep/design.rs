@@ -3,7 +3,8 @@
 //! A design knows nothing of the model: it makes rows of numbers from lists and ranges.
 
 use crate::dataset::value::Number;
-use crate::diagnostic::{Diagnostic, Error};
+use crate::diagnostic::{Diagnostic, Error, counted};
+use crate::random::Random;
 
 /// Runs that one design may ask for.
 pub const MOST_RUNS: usize = 1_000_000;
@@ -123,7 +124,10 @@ pub fn grid(values: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Error> {
     let runs = values.iter().map(Vec::len);
     let runs = runs.fold(1, usize::saturating_mul);
     if runs > MOST_RUNS {
-        let what = format!("the grid has {runs} runs; a sweep has at most {MOST_RUNS}");
+        let what = format!(
+            "the grid has {}; a sweep has at most {MOST_RUNS}",
+            counted(runs, "run")
+        );
         let d = Diagnostic::error("bad_sweep", what);
         return Err(d
             .help("--design latin --runs N spreads N runs over all")
@@ -168,30 +172,6 @@ pub fn latin(values: &[Values], runs: usize, seed: u64) -> Result<Vec<Vec<f64>>,
         }
     }
     Ok(points)
-}
-
-/// A generator of random numbers: Steele, Lea & Flood, Fast Splittable Pseudorandom Number
-/// Generators, OOPSLA 2014 (SplitMix64).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// Returns a number from 0 to below 1.
-    fn unit(&mut self) -> f64 {
-        const LEAST: f64 = 1.0 / (1u64 << 53) as f64;
-        (self.next() >> 11) as f64 * LEAST
-    }
-
-    /// Returns a whole number below `n`.
-    fn below(&mut self, n: usize) -> usize {
-        ((self.unit() * n as f64) as usize).min(n - 1)
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Measures of a run: one number made of the values of an expression at the outputs.
 
-use crate::analysis::session::Session;
+use crate::analysis::session::{Session, check_column};
 use crate::diagnostic::{Diagnostic, Error, Span, near_names};
 use crate::results::Run;
 
@@ -32,7 +32,8 @@ const REDUCTIONS: [(&str, Reduction); 8] = [
 /// A measure of a run: `max(ABS(FX(10,20)))`, `time_of_max(slider.X)`.
 ///
 /// The word outside is max, min, mean, rms, first, last, time_of_max or time_of_min. Inside stands
-/// an expression of the function language, or the name of a column of the results, also in `abs`.
+/// an expression of the function language, in which elements may have their names, or a component
+/// of a set of results (`crank_bearing.FX`), also in `abs`.
 ///
 /// Values are those at the outputs, static rows included; a peak between outputs is not seen. Means
 /// are those over time of straight lines between the outputs. Values that are not finite are left
@@ -92,10 +93,12 @@ impl Measure {
         let of = inside.unwrap_or(of);
         let recorded = session.run.find(of);
         if recorded.is_none() {
-            let mut wrong = session.model.check_expression(of);
+            // a mistake inside of abs stands there
+            let asked = inside_abs(of).unwrap_or(of);
+            let mut wrong = check_column(&session.model, of);
             if !wrong.is_empty() {
-                wrong.iter_mut().for_each(|d| shift(d, name, of));
-                wrong[0].help.extend(near_column(of, session));
+                wrong = check_column(&session.model, asked);
+                wrong.iter_mut().for_each(|d| shift(d, name, asked));
                 return Err(wrong.into());
             }
         }
@@ -161,14 +164,7 @@ fn inside_abs(text: &str) -> Option<&str> {
 
 /// Returns whether a text is a column of the results, or an expression without mistakes.
 fn is_sound(text: &str, session: &Session) -> bool {
-    session.run.find(text).is_some() || session.model.check_expression(text).is_empty()
-}
-
-/// Returns advice about columns of the results that are called nearly so.
-fn near_column(of: &str, session: &Session) -> Option<String> {
-    let columns = session.run.columns.iter().map(|c| c.name.as_str());
-    let near = near_names(inside_abs(of).unwrap_or(of), columns);
-    (!near.is_empty()).then(|| format!("columns of the results: {}", near.join(", ")))
+    session.run.find(text).is_some() || check_column(&session.model, text).is_empty()
 }
 
 /// Moves a place within the expression to that within the measure.

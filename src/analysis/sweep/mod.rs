@@ -23,10 +23,11 @@ pub use table::Table;
 
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
+use crate::analysis::stack;
 use crate::analysis::system::closures::{Call, Hook};
 use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
-use crate::diagnostic::{Diagnostic, Error};
+use crate::diagnostic::{Diagnostic, Error, counted};
 use crate::model::{ElementKind, Model};
 use crate::results::Status;
 use std::collections::HashMap;
@@ -34,9 +35,6 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// Stack of a thread that runs models, in bytes; what is not used is not taken.
-const STACK_BYTES: usize = 256 << 20;
 
 /// Many runs of one model.
 ///
@@ -271,7 +269,10 @@ impl Sweep {
     ) -> Result<(), Error> {
         self.check(points)?;
         if let Some(run) = wanted.iter().find(|&&run| run >= points.len()) {
-            let what = format!("run {run} is wanted, of {} points", points.len());
+            let what = format!(
+                "there is no run {run} among {}",
+                counted(points.len(), "point")
+            );
             return Err(Diagnostic::error("bad_sweep", what).into());
         }
         let wanted = &self.in_groups(points, wanted);
@@ -284,13 +285,14 @@ impl Sweep {
             follow,
         };
         let threads = threads.clamp(1, wanted.len().max(1));
+        let stack_bytes = stack::bytes(threads);
         let mut outcome = Ok(());
         std::thread::scope(|scope| {
             let (sender, rows) = channel();
             let mut begun = 0;
             for _ in 0..threads {
                 let (crew, sender) = (&crew, sender.clone());
-                let builder = std::thread::Builder::new().stack_size(STACK_BYTES);
+                let builder = std::thread::Builder::new().stack_size(stack_bytes);
                 let work = move || crew.work(&sender);
                 begun += usize::from(builder.spawn_scoped(scope, work).is_ok());
             }
@@ -339,7 +341,11 @@ impl Sweep {
         for (k, point) in points.iter().enumerate() {
             if point.len() != n {
                 let given = point.len();
-                return refuse(format!("point {k} has {given} values for {n} parameters"));
+                return refuse(format!(
+                    "point {k} has {} for {}",
+                    counted(given, "value"),
+                    counted(n, "parameter")
+                ));
             }
             if let Some(at) = point.iter().position(|x| !x.is_finite()) {
                 let (name, x) = (self.parameters[at].name(), point[at]);
@@ -354,6 +360,7 @@ impl Sweep {
         Options {
             columns,
             keep_start: true,
+            named_only: true,
             ..self.options.clone()
         }
     }

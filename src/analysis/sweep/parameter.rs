@@ -6,8 +6,8 @@ use crate::dataset::row::{
 };
 use crate::dataset::statement::{self, STATEMENTS};
 use crate::dataset::value::{Kind, Number, Value};
-use crate::diagnostic::{Cause, Diagnostic, Error, Span, near_names};
-use crate::model::{ElementKind, Formula, Model, Place};
+use crate::diagnostic::{Cause, Diagnostic, Error, Span, counted, near_names};
+use crate::model::{ElementId, ElementKind, Formula, Model, Place};
 
 /// A number of the model that a sweep sets.
 ///
@@ -17,6 +17,7 @@ use crate::model::{ElementKind, Formula, Model, Place};
 /// | `MARKER/21.QP(1)` | the first number of an argument that is a list |
 /// | `ACCGRAV.JGRAV` | an argument of a statement without a number |
 /// | `VARIABLE/3` | its FUNCTION, which becomes the number; of any statement that has one |
+/// | `slider.MASS`, `slider.cm.QP(1)`, `gain` | the same by the name of the element |
 ///
 /// Keywords may be abbreviated as in datasets. Numbers are in the units of the model, angles in
 /// radians.
@@ -54,11 +55,12 @@ impl Parameter {
     /// that hold no number or change nothing.
     pub fn new(model: &Model, name: &str) -> Result<Self, Error> {
         let name = name.trim();
-        let (head, argument) = match name.split_once('.') {
-            Some((head, argument)) => (head.trim(), Some(argument.trim())),
-            None => (name, None),
-        };
-        let (row, id) = element(model, name, head)?;
+        let placed = |error: Error| error.map(|d| d.at(name, Span::new(0, name.len())));
+        Self::named(model, name).map_err(placed)
+    }
+
+    fn named(model: &Model, name: &str) -> Result<Self, Error> {
+        let (row, id, argument) = element(model, name)?;
         let arguments = row.arguments();
         let (argument, place) = match argument {
             Some(text) => listed(name, text)?,
@@ -166,7 +168,7 @@ impl Parameter {
         match all.get_mut(place) {
             Some(old) => *old = number,
             None => {
-                let what = format!("the model gives {n} numbers there");
+                let what = format!("the model gives {} there", counted(n, "number"));
                 return Err(wrong("bad_sweep", &self.name, what).into());
             }
         }
@@ -174,30 +176,90 @@ impl Parameter {
     }
 }
 
-/// Finds the statement of `PART/2` or `ACCGRAV`.
-fn element(
+/// A statement, the number of its element, and the argument that is named with it.
+type Found<'a> = (&'static dyn Statement, Option<u32>, Option<&'a str>);
+
+/// Finds the statement of `PART/2.MASS`, `slider.MASS`, `gain` or `ACCGRAV.JGRAV`.
+fn element<'a>(model: &Model, name: &'a str) -> Result<Found<'a>, Error> {
+    let of_element = |id: ElementId, argument| {
+        let row = STATEMENTS.iter().find(|row| row.kind() == Some(id.kind));
+        let row = *row.ok_or_else(|| model.no_element(id))?;
+        Ok((row, Some(id.number), argument))
+    };
+    let (head, argument) = match name.rsplit_once('.') {
+        Some((head, argument)) => (head.trim(), Some(argument.trim())),
+        None => (name, None),
+    };
+    // of several elements of a name those count that have the argument
+    let kinds = argument.map_or_else(Vec::new, kinds_with);
+    let of_kinds = match kinds.is_empty() {
+        true => model.find_element(head),
+        false => model.find_of(&kinds, head),
+    };
+    let said = match of_kinds {
+        Ok(id) => return of_element(id, argument),
+        Err(said) => said,
+    };
+    // the name may have dots, and an element may lack the argument
+    if let Ok(id) = model.find_element(name) {
+        return of_element(id, None);
+    }
+    match model.find_element(head) {
+        Ok(id) => of_element(id, argument),
+        Err(_) => statement(model, name, (head, argument), said),
+    }
+}
+
+/// Returns the kinds of elements whose statements have an argument, with or without a place in its
+/// list.
+fn kinds_with(argument: &str) -> Vec<ElementKind> {
+    let word = argument.split('(').next().unwrap_or_default().trim();
+    let has = |row: &&&'static dyn Statement| {
+        let arguments = row.arguments();
+        matches!(
+            meaning(word, arguments.iter().map(|a| a.name)),
+            Meaning::One(_)
+        )
+    };
+    let rows = STATEMENTS.iter().filter(has);
+    rows.filter_map(|row| row.kind()).collect()
+}
+
+/// Finds the statement of `ACCGRAV`, or of `PA/2`, whose keyword is abbreviated; `said`: no element
+/// has the name.
+fn statement<'a>(
     model: &Model,
     name: &str,
-    head: &str,
-) -> Result<(&'static dyn Statement, Option<u32>), Error> {
+    (head, argument): (&str, Option<&'a str>),
+    said: Diagnostic,
+) -> Result<Found<'a>, Error> {
     let (word, number) = match head.split_once('/') {
         Some((word, number)) => (word.trim(), Some(number.trim())),
         None => (head, None),
     };
     let Meaning::One(k) = statement::find(word) else {
+        if number.is_none() && argument.is_some() {
+            return Err(said.into());
+        }
         let d = wrong(
             "unknown_statement",
             name,
             format!("there is no statement {word}"),
         );
         let known: Vec<String> = STATEMENTS.iter().map(|s| canonical(s.keyword())).collect();
-        return Err(with_near(d, word, &known).into());
+        let mut d = with_near(d, word, &known);
+        d.help.extend(
+            said.help
+                .into_iter()
+                .filter(|h| h.starts_with("did you mean")),
+        );
+        return Err(d.into());
     };
     let row = STATEMENTS[k];
     let keyword = canonical(row.keyword());
     let Some(kind) = row.kind() else {
         return match number {
-            None => Ok((row, None)),
+            None => Ok((row, None, argument)),
             Some(_) => Err(wrong("bad_sweep", name, format!("{keyword} has no number")).into()),
         };
     };
@@ -219,7 +281,7 @@ fn element(
         d.help.extend(near_ids(id, known.into_iter()));
         return Err(d.into());
     }
-    Ok((row, Some(id)))
+    Ok((row, Some(id), argument))
 }
 
 /// Splits `QP(2)` into the keyword and its place from 0.

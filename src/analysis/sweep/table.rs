@@ -13,7 +13,8 @@ use super::{Parameter, Row, Sweep};
 use crate::diagnostic::{Cause, Diagnostic, Error};
 use crate::disk;
 use crate::disk::{File, OpenOptions};
-use crate::results::{Column, Kind, Run, Sequence, Status, digest, digits, write_text};
+use crate::results::csv::safe_name;
+use crate::results::{Column, Kind, Run, Sequence, Status, Writing, digest, digits, write_text};
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -38,24 +39,49 @@ impl Table {
     ///
     /// # Errors
     /// A file that is not the table of this sweep, or has rows that are no points of the design;
-    /// one that cannot be read or written.
+    /// one that cannot be read, or may not be written.
     pub fn open(path: &Path, sweep: &Sweep, points: &[Vec<f64>]) -> Result<Self, Error> {
+        Self::open_with(path, sweep, points, Writing::default())
+    }
+
+    /// Does the same with leave to write.
+    ///
+    /// # Errors
+    /// As [`Table::open`].
+    pub fn open_with(
+        path: &Path,
+        sweep: &Sweep,
+        points: &[Vec<f64>],
+        writing: Writing,
+    ) -> Result<Self, Error> {
         let (names, units) = heads(sweep);
         let record = path.with_extension("sweep.json");
+        let digest = recorded_digest(&record).filter(|_| disk::is_there(path));
+        let is_this = digest.as_ref().is_some_and(|d| *d == digest_of(sweep));
+        let is_of_this_sweep = is_this && !disk::is_input(path);
+        if digest.is_some() && !is_of_this_sweep && !writing.overwrites() {
+            let what = format!("{} is no table of this sweep", disk::text(&path));
+            return Err(other(what).into());
+        }
         let mut rows = Vec::new();
-        if disk::is_there(path) {
-            let digest = recorded_digest(&record);
-            if digest.is_none_or(|d| d != digest_of(sweep)) {
-                let what = format!("{} is no table of this sweep", path.display());
-                return Err(other(what).into());
-            }
+        if is_of_this_sweep {
             rows = read(path, &names, points)?;
-        } else {
-            write_text(&record, &record_text(sweep))?;
         }
         let n_found = rows.len();
         let text = written(&names, &units, &rows);
-        write_text(path, &text)?;
+        if !is_of_this_sweep {
+            for place in [path, &record] {
+                writing.check(place)?;
+            }
+            writing.text(&record, &record_text(sweep))?;
+        }
+        let before = disk::read_own(path).unwrap_or_default();
+        match is_of_this_sweep {
+            // at most a line that was cut off is lost
+            true if before.starts_with(text.as_bytes()) => write_text(path, &text)?,
+            true => drop(writing.replace_own(path, &text)?),
+            false => drop(writing.text(path, &text)?),
+        }
         let file = OpenOptions::new().append(true).open(path);
         Ok(Self {
             file: file.map_err(|e| unwritable(path, e))?,
@@ -185,15 +211,16 @@ fn lines(rows: impl IntoIterator<Item = Vec<String>>) -> Vec<u8> {
 }
 
 fn written(names: &[String], units: &[String], rows: &[Row]) -> String {
-    let heads = [names.to_vec(), units.to_vec()].into_iter();
+    let safe = |names: &[String]| names.iter().map(|name| safe_name(name)).collect();
+    let heads = [safe(names), safe(units)].into_iter();
     let bytes = lines(heads.chain(rows.iter().map(cells)));
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
 /// Reads the rows of a table, each as that of a point of the design that has no row yet.
 fn read(path: &Path, names: &[String], points: &[Vec<f64>]) -> Result<Vec<Row>, Error> {
-    let bytes = disk::read(path).map_err(|e| {
-        let what = format!("{}: cannot be opened: {e}", path.display());
+    let bytes = disk::read_own(path).map_err(|e| {
+        let what = format!("{}: cannot be opened: {e}", disk::text(&path));
         Error::from(Diagnostic::error("cannot_open", what)).with_source(e)
     })?;
     // a line that was cut off is no row
@@ -203,14 +230,14 @@ fn read(path: &Path, names: &[String], points: &[Vec<f64>]) -> Result<Vec<Row>, 
         .flexible(true)
         .from_reader(&bytes[..end]);
     let mut lines = reader.records();
-    let is_head = |line: &::csv::StringRecord| line.iter().eq(names.iter().map(String::as_str));
+    let is_head = |line: &::csv::StringRecord| line.iter().eq(names.iter().map(|n| safe_name(n)));
     if end > 0
         && !lines
             .next()
             .and_then(Result::ok)
             .is_some_and(|l| is_head(&l))
     {
-        let what = format!("{} has other columns than this sweep", path.display());
+        let what = format!("{} has other columns than this sweep", disk::text(&path));
         return Err(other(what).into());
     }
     let key = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
@@ -229,7 +256,7 @@ fn read(path: &Path, names: &[String], points: &[Vec<f64>]) -> Result<Vec<Row>, 
         let Some(run) = free.get_mut(&key(&row.values)).and_then(Vec::pop) else {
             let what = format!(
                 "{} has a run {} that the design has not",
-                path.display(),
+                disk::text(&path),
                 row.run
             );
             return Err(other(what).into());
@@ -283,7 +310,7 @@ fn record_text(sweep: &Sweep) -> String {
 }
 
 fn recorded_digest(record: &Path) -> Option<String> {
-    let text = disk::read(record).ok()?;
+    let text = disk::read_own(record).ok()?;
     let record: serde_json::Value = serde_json::from_slice(&text).ok()?;
     Some(record["digest"].as_str()?.to_owned())
 }
@@ -294,6 +321,6 @@ fn other(what: String) -> Diagnostic {
 }
 
 fn unwritable(path: &Path, e: std::io::Error) -> Error {
-    let what = format!("{}: cannot be written: {e}", path.display());
+    let what = format!("{}: cannot be written: {e}", disk::text(&path));
     Error::from(Diagnostic::error(Cause::FileUnwritable, what)).with_source(e)
 }

@@ -113,12 +113,18 @@ impl Options {
 /// stiff systems with modest requests, which RADAU5 solves with fewer steps and without their
 /// damping (BDF is there by its own name). ABAM and RKF45 are explicit.
 pub fn method_named(name: &str) -> String {
-    match name.to_ascii_uppercase().as_str() {
-        "GSTIFF" | "WSTIFF" | "HASTIFF" | "CONSTANT_BDF" => "RADAU5".into(),
-        "ABAM" | "RKF45" => "DOP853".into(),
-        other => other.to_string(),
-    }
+    let name = name.to_ascii_uppercase();
+    let ours = METHODS_OF_ADAMS
+        .iter()
+        .find(|(_, names)| names.contains(&name.as_str()));
+    ours.map_or(name, |(ours, _)| (*ours).to_owned())
 }
+
+/// Methods of ours, and the names of Adams that they do the work of.
+pub const METHODS_OF_ADAMS: [(&str, &[&str]); 2] = [
+    ("RADAU5", &["GSTIFF", "WSTIFF", "HASTIFF", "CONSTANT_BDF"]),
+    ("DOP853", &["ABAM", "RKF45"]),
+];
 
 /// Steps of an explicit method that stability may force before an implicit one is taken at once.
 const MAX_STABILITY_STEPS: f64 = 2000.0;

@@ -204,7 +204,7 @@ impl AssemblyWarning {
                 names.of(ElementKind::Marker.id(*j))
             ),
             AssemblyWarning::OppositeAngle { angle, .. } => format!(
-                " is off by {} deg: its equation holds at that angle too, and the one that it \
+                " is off by {} deg: its equation holds at that angle too, and the angle that it \
                  asks for cannot be reached",
                 short(angle.to_degrees())
             ),
@@ -254,8 +254,8 @@ fn moved(offset: f64, turn: f64, unit: &str) -> String {
     let turned = (turn > 0.0).then(|| format!("turned by {} deg", short(turn.to_degrees())));
     let leap: Vec<String> = moved.into_iter().chain(turned).collect();
     format!(
-        " is {} between two simulations, to where what was switched on or changed there holds; \
-         such leaps are told once for a part",
+        " is {} between two simulations, to satisfy what was switched on or changed there; \
+         this is said once for each part",
         leap.join(" and ")
     )
 }
@@ -266,8 +266,8 @@ fn struck(speed: f64, spin: f64, unit: &str) -> String {
     let spin = (spin > 0.0).then(|| format!("{} rad", short(spin)));
     let rates: Vec<String> = speed.into_iter().chain(spin).collect();
     format!(
-        ": its velocity changes by {} per unit of time between two simulations, as by a blow: \
-         what was switched on or changed there holds at once; such leaps are told once for a part",
+        ": its velocity jumps by {} per unit of time between two simulations, to satisfy what was \
+         switched on or changed there; this is said once for each part",
         rates.join(" and ")
     )
 }

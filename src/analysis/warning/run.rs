@@ -2,7 +2,7 @@
 
 use super::{Names, Rate, Unrest};
 use crate::analysis::quantity::{amount, place, short};
-use crate::diagnostic::{Diagnostic, Subject};
+use crate::diagnostic::{Diagnostic, Subject, counted};
 use crate::model::{ElementId, ElementKind};
 use crate::results::{Quantity, RankChange, RowChange, Units, digits_of_six};
 use crate::scene::equations::Unsupported;
@@ -356,7 +356,7 @@ fn beyond_tolerance(at: f64, off: &str) -> String {
 /// Returns what rounding of the accelerations adds up to.
 fn rounding_adds_up(error: f64, reached: f64) -> String {
     format!(
-        "an error of {error} is below rounding: that of the accelerations alone adds up to about \
+        "an error of {error} cannot be reached: rounding of the accelerations alone adds up to about \
          {reached:.0e} of the largest velocities"
     )
 }
@@ -364,15 +364,15 @@ fn rounding_adds_up(error: f64, reached: f64) -> String {
 /// Returns how far bars of error hold where the run at another request ended otherwise.
 fn companion_ended(request: f64) -> String {
     format!(
-        "a run at an error of {request:.1e} ends otherwise than this one: bars of error hold as far \
-         as both go"
+        "the comparison run, at an error of {request:.1e}, ends otherwise than this one: there are bars \
+         of error only as far as both go"
     )
 }
 
 /// Returns that an equilibrium would be left after a small push.
 fn unstable(at: f64, directions: usize) -> String {
-    let plural = if directions == 1 { "" } else { "s" };
-    format!("the equilibrium at time {at} is unstable in {directions} direction{plural}")
+    let directions = counted(directions, "direction");
+    format!("the equilibrium at time {at} is unstable in {directions}")
 }
 
 /// Returns that a small push off an equilibrium grows, and how fast.
@@ -397,9 +397,8 @@ fn push_grows(at: f64, [rate, frequency]: [f64; 2], unit: &str) -> String {
 /// Returns from when on angles are no rotations, and how far from that they are.
 fn large_angles(since: f64, tilt: f64) -> String {
     format!(
-        ": its law takes AX, AY and AZ for rotations about the axes of J, which holds where two of \
-         them are small; from time {} on they are not: even the axis that tilts least tilts by up \
-         to {} deg",
+        ": its law takes AX, AY and AZ for rotations about the axes of J, which holds while two of \
+         them are small; from time {} on no two are: the axis that tilts least tilts by up to {} deg",
         short(since),
         short(tilt.to_degrees())
     )
@@ -424,16 +423,16 @@ fn not_at_rest(at: f64, (unrest, units): (&Unrest, &Units), is_settled: bool) ->
 /// Returns in how many of all steps stability kept an explicit method short.
 fn stiff(limited: usize, steps: usize) -> String {
     format!(
-        "the model is stiff: in {limited} of {steps} steps stability, not the error asked for, kept \
-         an explicit method short; RADAU5 or AUTO takes longer ones"
+        "the model is stiff: in {limited} of {steps} steps stability, not the requested error, kept \
+         the steps of an explicit method short; RADAU5 or AUTO takes longer ones"
     )
 }
 
 /// Returns which share of all energy its balance lacks.
 fn energy(share: f64) -> String {
     format!(
-        "the balance of energy lacks {:.0} % of all there was: the method itself took it from the \
-         motion, or gave it; a smaller ERROR keeps it",
+        "the balance of energy is off by {:.0} % of all energy: the integrator took it from the \
+         motion, or added it; a smaller ERROR makes it less",
         100.0 * share
     )
 }
@@ -442,26 +441,26 @@ fn energy(share: f64) -> String {
 fn phase(swings: f64, off: f64) -> String {
     let known = if off < PI { "not sure" } else { "lost" };
     format!(
-        "the phase of about {swings:.0} swings is {known}: errors may have added up to {off:.1} rad \
-         in the end; a smaller ERROR keeps it, and --accuracy says from when on it is lost"
+        "the phase of about {swings:.0} swings is {known}: its error may reach {off:.1} rad by the \
+         end; a smaller ERROR makes it less, and --accuracy shows when the phase is lost"
     )
 }
 
 /// Returns how far the errors of undamped swings have added up, over the request.
 fn errors_add_up(swings: f64, requests: f64) -> String {
     format!(
-        "nothing slows about {swings:.0} swings down, so their errors add up: over their width to some \
-         {requests:.0} times the error asked for; a smaller ERROR makes it less, and --accuracy says \
-         how far off results are"
+        "about {swings:.0} swings are undamped, so that errors add up, to some {requests:.0} times the \
+         requested error relative to their amplitude; a smaller ERROR makes it less, and --accuracy \
+         shows how far off results are"
     )
 }
 
 /// Returns how small a motion is beside its model, and what that makes of its errors.
 fn small_motion(reach: f64, share: f64, error: f64) -> String {
     format!(
-        "nothing moves by more than {reach:.0e} of the size of the model, or rad: errors are permitted \
-         in proportion to that size, here up to {share:.0e} of the motion; --error {error:.0e} makes \
-         them as small beside the motion as was asked"
+        "nothing moves by more than {reach:.0e} of the size of the model, or rad. The requested error \
+         is relative to that size, which here permits {share:.0e} of the motion; for the same error \
+         relative to the motion: --error {error:.0e}"
     )
 }
 
@@ -477,12 +476,12 @@ fn after_jump(quantity: Quantity) -> &'static str {
 fn in_vain(error: f64, below: usize, steps: usize) -> String {
     if below * FEW_STEPS < steps {
         return format!(
-            "an error of {error} could not be kept in {below} of {steps} steps: shorter ones were no \
-             better, as the rates are rounded or change without a slope there"
+            "an error of {error} was not reached in {below} of {steps} steps: shorter steps were no \
+             better, because the rates are rounded there or jump"
         );
     }
     format!(
-        "an error of {error} is below rounding: it was asked for in vain in {below} of {steps} steps, \
+        "an error of {error} is below rounding and was not reached in {below} of {steps} steps, \
          which are as exact as rounding permits"
     )
 }
@@ -511,7 +510,7 @@ pub fn jumps(quantity: Quantity, all: &[(f64, f64)]) -> String {
     let shown = all.iter().take(MOST_TIMES);
     let mut times: Vec<String> = shown.map(|(at, by)| format!("{at} (by {by:.6})")).collect();
     if all.len() > MOST_TIMES {
-        times.push(format!("{} more times", all.len() - MOST_TIMES));
+        times.push(counted(all.len() - MOST_TIMES, "more time"));
     }
     let (what, times) = (quantity.word(), times.join(", "));
     format!("the {what} it prescribes jumps at time {times}")
@@ -532,8 +531,8 @@ fn idle_contacts(contacts: &[ElementId], names: &Names) -> String {
     let others = contacts.iter().skip(1);
     let others: String = others.map(|&id| format!(", {}", names.of(id))).collect();
     format!(
-        "{others}: in a kinematic run a contact pushes and moves nothing; motions go on through what \
-         is in their way"
+        "{others}: in a kinematic run contacts stop nothing: parts follow their motions, through \
+         whatever is in their way"
     )
 }
 
@@ -542,15 +541,15 @@ fn of_rank(change: &RankChange) -> String {
     let (time, rows) = (change.time, change.rows.join(", "));
     match change.change {
         RowChange::Passes => format!(
-            "at time {time:.9} the rank of the constraints falls in passing: \
-             {rows} depends on others where {}",
+            "at time {time:.9} the constraints are dependent for a moment: {rows} follows from \
+             others where {}",
             place(&change.place)
         ),
         RowChange::Restored => format!(
-            "at time {time:.9} {rows} no longer follows from the others; it is kept from there"
+            "from time {time:.9} on {rows} no longer follows from other constraints, and is used again"
         ),
         RowChange::Exchanged => format!(
-            "at time {time:.9} other rows are kept: {rows} in place of what they make superfluous"
+            "from time {time:.9} on {rows} is used, in place of constraints that it makes redundant"
         ),
     }
 }

@@ -1,7 +1,7 @@
 //! Warnings of verifications: what is taken for granted, and what a simulation would need.
 
 use super::owner;
-use crate::diagnostic::{Cause, Diagnostic, Subject};
+use crate::diagnostic::{Cause, Diagnostic, Subject, counted};
 use crate::model::ElementId;
 use crate::scene::left_out::Hidden;
 
@@ -66,10 +66,10 @@ impl VerificationWarning {
                 hidden,
                 ..
             } => {
-                let plural = if *n == 1 { "" } else { "s" };
                 format!(
-                    " is counted with {n} equation{plural}, but what it holds is unknown: \
-                     {hidden}; the freedom from the rank is that without it, and up to {n} too large"
+                    " is counted with {}, but what it holds is unknown: {hidden}; the freedom from \
+                     the rank is that without it, and up to {n} too large",
+                    counted(*n, "equation")
                 )
             }
             VerificationWarning::FreedomNearby { here, nearby } => format!(

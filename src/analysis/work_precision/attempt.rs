@@ -7,12 +7,12 @@ use crate::analysis::session::script::obey;
 use crate::analysis::session::{Options, Session};
 use crate::analysis::watch::Watch;
 use crate::analysis::work_limit::ProcessorClock;
-use crate::clock::Moment;
 use crate::diagnostic::Error;
-use crate::results::{Counts, Kind, Record, Run, Status, csv};
+use crate::numeric::METHODS;
+use crate::results::{Counts, Kind, Record, Run, Simulation, Status, csv};
 
-/// Solving is repeated until it has taken about this long, in s: the clock of the processor has a
-/// resolution of some milliseconds.
+/// Solving is repeated until it has used about this much processor time, in s: some systems count
+/// it by ticks of some milliseconds, and short runs differ from each other.
 const TIMED: f64 = 0.05;
 /// Repeats, at most.
 const MOST_REPEATS: f64 = 2000.0;
@@ -51,35 +51,42 @@ pub(super) fn attempt(
         ..question.options.clone()
     };
     let whole = ProcessorClock::start();
-    let (mut session, seconds) = once(question, options(1), watch)?;
+    let (mut session, all) = once(question, options(1), watch)?;
     let record = session.run.record.clone();
-    let solve_once = seconds.solving;
-    let mut cost = Cost {
-        counts: record.counts,
-        solve: solve_once,
-        set_up: (seconds.all - solve_once).max(0.0),
-        ..Cost::default()
-    };
-    cost.write = writing(&session.run);
+    let mut solve = record.solve_processor_seconds;
+    let mut set_up = (all - solve).max(0.0);
     if record.status == Status::Completed {
-        let repeats = (TIMED / record.seconds.solve.max(1e-9)).ceil();
-        let mut repeats = repeats.clamp(1.0, MOST_REPEATS);
-        while repeats > 1.0 && seconds.all < 0.1 * limit {
-            let (_, again) = once(question, options(1 + repeats as usize), watch)?;
-            cost.solve = again.solving;
-            cost.set_up = (seconds.all - cost.solve).max(0.0);
-            // where others work on this machine, time passes in which little is solved
-            if repeats * again.solving > 0.5 * TIMED || repeats == MOST_REPEATS {
+        // no thread uses more than passes: the first guess is too small rather than too large
+        let mut repeats = (TIMED / record.seconds.solve.max(1e-9)).ceil();
+        repeats = repeats.clamp(1.0, MOST_REPEATS);
+        while repeats > 1.0 && whole.seconds() < 0.1 * limit {
+            let (again, all) = once(question, options(1 + repeats as usize), watch)?;
+            let again = &again.run.record;
+            if again.status != Status::Completed {
+                break;
+            }
+            solve = again.solve_processor_seconds;
+            set_up = (all - f64::from(again.repeats) * solve).max(0.0);
+            if repeats * solve > 0.5 * TIMED || repeats == MOST_REPEATS {
                 break;
             }
             repeats = (4.0 * repeats).min(MOST_REPEATS);
         }
-        cost.profile = profile_of(&mut session, &record, cost.solve);
+    }
+    let mut cost = Cost {
+        counts: record.counts,
+        solve,
+        set_up,
+        write: writing(&session.run),
+        profile: None,
+    };
+    if record.status == Status::Completed {
+        cost.profile = profile_of(&mut session, &record, solve);
     }
     Ok(Attempt {
         table: Table::of(&session.run),
         status: record.status,
-        is_integrated: record.simulations.iter().any(|s| s.kind == Kind::Dynamic),
+        is_integrated: record.simulations.iter().any(is_integrated),
         reason: record.stop_reason,
         worked: record.method,
         cost,
@@ -87,12 +94,27 @@ pub(super) fn attempt(
     })
 }
 
-/// Returns the time of making the text of a table, the shorter of two, in s.
+/// Returns whether a method integrated a simulation: also one that is kinematic may have states of
+/// differential equations.
+fn is_integrated(simulation: &Simulation) -> bool {
+    let is_method = || {
+        METHODS
+            .iter()
+            .any(|m| simulation.method.starts_with(m.name))
+    };
+    match simulation.kind {
+        Kind::Dynamic => true,
+        Kind::Kinematic => is_method(),
+        Kind::Input | Kind::InitialConditions | Kind::Static | Kind::QuasiStatic => false,
+    }
+}
+
+/// Returns the processor time of making the text of a table, the shorter of two, in s.
 fn writing(run: &Run) -> f64 {
     let seconds = [(); 2].map(|()| {
-        let clock = Moment::now();
+        let clock = ProcessorClock::start();
         std::hint::black_box(csv::write(run, true));
-        clock.elapsed().as_secs_f64()
+        clock.seconds()
     });
     seconds[0].min(seconds[1])
 }
@@ -110,13 +132,7 @@ fn profile_of(session: &mut Session, record: &Record, solve: f64) -> Option<Prof
     Some(profile::of(system, &counts, share * solve))
 }
 
-/// Processor time of a run, in s.
-struct Seconds {
-    all: f64,
-    solving: f64,
-}
-
-/// Runs the commands of a question once.
+/// Runs the commands of a question once; returns the processor time of it all, in s.
 ///
 /// # Errors
 /// Mistakes in the model or a command.
@@ -124,17 +140,10 @@ fn once(
     question: &Question<'_>,
     options: Options,
     watch: &mut dyn Watch,
-) -> Result<(Session, Seconds), Error> {
-    let (clock, passing) = (ProcessorClock::start(), Moment::now());
+) -> Result<(Session, f64), Error> {
+    let clock = ProcessorClock::start();
     let mut session = Session::new(question.model.clone(), &question.name, options);
     session.folders.clone_from(&question.folders);
     obey(&mut session, question.steps, |_, _| (), watch)?;
-    let record = &session.run.record;
-    // where others work on this machine, time passes that was not used
-    let (used, passed) = (clock.seconds(), passing.elapsed().as_secs_f64());
-    let used_part = if passed > 0.0 { used / passed } else { 1.0 };
-    let all = used;
-    let passing = record.seconds.solve * used_part;
-    let solving = record.repeated_seconds.unwrap_or(passing);
-    Ok((session, Seconds { all, solving }))
+    Ok((session, clock.seconds()))
 }

@@ -1,6 +1,6 @@
 //! A chart with two logarithmic axes, as SVG within a page.
 
-use super::page::escaped;
+use quick_xml::escape::escape;
 use std::fmt::Write as _;
 
 /// Width and height of a chart, in px.
@@ -86,8 +86,8 @@ impl Chart {
         let y = Axis::around(points().map(|p| p.1), [height - bottom, top]);
         let mut svg = format!(
             "<svg viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" aria-label=\"{} against {}\">\n",
-            escaped(&self.y),
-            escaped(&self.x)
+            escape(&self.y),
+            escape(&self.x)
         );
         self.draw_axes(&mut svg, &x, &y);
         if self.diagonal {
@@ -149,8 +149,8 @@ impl Chart {
              <text x=\"{middle_x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\
              <text x=\"14\" y=\"{middle_y:.1}\" text-anchor=\"middle\" transform=\"rotate(-90 14 {middle_y:.1})\">{}</text>",
             y0 + 40.0,
-            escaped(&self.x),
-            escaped(&self.y)
+            escape(&self.x),
+            escape(&self.y)
         );
     }
 }
@@ -174,7 +174,7 @@ fn draw_curve(svg: &mut String, curve: &Curve, (x, y): (&Axis, &Axis), colour: &
         let _ = writeln!(
             svg,
             "<circle cx=\"{px:.1}\" cy=\"{py:.1}\" r=\"3.2\" fill=\"{colour}\"><title>{}</title></circle>",
-            escaped(what)
+            escape(what)
         );
     }
 }

@@ -29,6 +29,7 @@ pub use sheet::sheet;
 pub use survey::survey;
 
 use crate::analysis::session;
+use crate::analysis::watch::{Unwatched, Watch};
 use crate::dataset::command::Step;
 use crate::model::Model;
 use crate::results::{Counts, Run, Status};
@@ -57,6 +58,8 @@ pub struct Question<'a> {
     pub requests: Vec<f64>,
     /// names of methods; empty: all that fit
     pub methods: Vec<String>,
+    /// errors for which a run will be recommended
+    pub wanted: Vec<f64>,
     /// processor time for all runs together, in s
     pub budget: f64,
     /// a table that is trusted: its columns bear the names of those of the runs
@@ -82,7 +85,18 @@ pub struct Study {
     pub seconds: f64,
     /// the caller stopped it
     pub interrupted: bool,
+    /// whether a method integrates: otherwise the only run is right to rounding
+    pub is_integrated: bool,
 }
+
+/// Hooks called while a study goes on.
+pub trait Follow: Watch {
+    /// Takes note of the method and the request of a run that begins, and of the processor time of
+    /// the runs before, in s.
+    fn begins(&mut self, _run: (&str, f64), _spent: f64) {}
+}
+
+impl Follow for Unwatched {}
 
 /// The table that errors are measured against.
 #[derive(Clone, Debug, PartialEq)]
@@ -176,8 +190,10 @@ pub struct LeftOut {
 /// The reason why a run was not started.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reason {
-    /// it would probably have taken longer than the budget has left
+    /// a request would probably have taken longer than the budget has left
     Budget {
+        /// the request: the next one, or the next of those that are wanted
+        to: f64,
         /// expected processor time, in s
         expected: f64,
     },
@@ -190,10 +206,10 @@ pub enum Reason {
 impl std::fmt::Display for Reason {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Reason::Budget { expected } => {
+            Reason::Budget { to, expected } => {
                 write!(
                     f,
-                    "about {} expected, more than the budget has left",
+                    "{to:.0e} would take about {}, more than the budget has left",
                     write::duration(*expected)
                 )
             }
@@ -269,6 +285,7 @@ mod tests {
             left_out: Vec::new(),
             seconds: 0.0,
             interrupted: false,
+            is_integrated: true,
         }
     }
 

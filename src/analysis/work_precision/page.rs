@@ -3,7 +3,9 @@
 use super::chart::{COLOURS, Chart, Curve};
 use super::write::duration;
 use super::{Reference, Row, Study};
+use crate::diagnostic::counted;
 use crate::numeric::METHODS;
+use quick_xml::escape::escape;
 use std::fmt::Write as _;
 
 const STYLE: &str = "\
@@ -17,21 +19,6 @@ th{font-weight:600}td.l,th.l{text-align:left}td.why{text-align:left;white-space:
 .legend span{display:inline-block;margin-right:1.1em}.legend i{display:inline-block;width:14px;height:4px;margin-right:5px;vertical-align:middle}
 details{margin:.5em 0}summary{cursor:pointer;color:#005ea2}";
 
-/// Escapes a text for HTML and SVG.
-pub(super) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out += "&amp;",
-            '<' => out += "&lt;",
-            '>' => out += "&gt;",
-            '"' => out += "&quot;",
-            c => out.push(c),
-        }
-    }
-    out
-}
-
 /// Returns the colour of a method: the same on all pages.
 pub(super) fn colour(method: &str) -> &'static str {
     let place = METHODS.iter().position(|m| m.name == method);
@@ -44,7 +31,7 @@ pub fn page(title: &str, about: &str, studies: &[Study], wanted: &[f64]) -> Stri
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
          <title>{0}</title>\n<style>\n{STYLE}\n</style>\n</head>\n<body>\n<h1>{0}</h1>\n{about}\n",
-        escaped(title)
+        escape(title)
     );
     for study in studies {
         section(&mut page, study, wanted);
@@ -58,12 +45,17 @@ fn section(page: &mut String, study: &Study, wanted: &[f64]) {
     let _ = writeln!(
         page,
         "<section>\n<h2>{}</h2>\n<p class=\"faint\">{}</p>\n<p>{}.</p>",
-        escaped(&study.name),
-        escaped(&study.title),
-        escaped(&study.about_reference())
+        escape(&study.name),
+        escape(&study.title),
+        escape(study.about_reference())
     );
     if study.interrupted {
         *page += "<p>The study was interrupted: not all runs were made.</p>\n";
+    }
+    if !study.is_integrated {
+        runs(page, study);
+        *page += "</section>\n";
+        return;
     }
     let methods = methods(study);
     *page += "<p class=\"legend\">";
@@ -72,7 +64,7 @@ fn section(page: &mut String, study: &Study, wanted: &[f64]) {
             page,
             "<span><i style=\"background:{}\"></i>{}</span>",
             colour(method),
-            escaped(method)
+            escape(*method)
         );
     }
     *page += "</p>\n<div class=\"charts\">\n";
@@ -111,10 +103,10 @@ pub(super) fn charts(study: &Study, methods: &[&str]) -> [Chart; 2] {
             }
             let (x, y) = point(row, error);
             let what = format!(
-                "{method} at {:.0e}: error {error:.1e} in {}, {} steps",
+                "{method} at {:.0e}: error {error:.1e} in {}, {}",
                 row.request,
                 duration(row.cost.solve),
-                row.cost.counts.steps
+                counted(row.cost.counts.steps, "step")
             );
             Some((x, y, what))
         });
@@ -158,7 +150,7 @@ fn recommendations(page: &mut String, study: &Study, wanted: &[f64]) {
         let _ = writeln!(
             page,
             "<tr><td>{wanted:.0e}</td><td class=\"l\">--method {} --error {:.0e}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
-            escaped(&row.method),
+            escape(&row.method),
             row.request,
             shown(study, error),
             duration(row.cost.set_up),
@@ -186,7 +178,7 @@ fn runs(page: &mut String, study: &Study) {
         let _ = write!(
             page,
             "<tr><td class=\"l\">{}</td><td>{:.0e}</td>",
-            escaped(&row.method),
+            escape(&row.method),
             row.request
         );
         match row.error() {
@@ -196,14 +188,14 @@ fn runs(page: &mut String, study: &Study) {
                     "<td>{}</td><td>{}</td><td class=\"l\">{}</td>",
                     shown(study, e.rms),
                     shown(study, e.largest),
-                    escaped(study.channel(e.worst))
+                    escape(study.channel(e.worst))
                 );
             }
             None => {
                 let _ = write!(
                     page,
                     "<td class=\"why\" colspan=\"3\">{}</td>",
-                    escaped(&row.reason())
+                    escape(row.reason())
                 );
             }
         }
@@ -226,7 +218,7 @@ fn runs(page: &mut String, study: &Study) {
         let _ = writeln!(
             page,
             "<p class=\"faint\">Left out: {} at {}: {}.</p>",
-            escaped(&left.method),
+            escape(&left.method),
             requests.join(", "),
             left.why
         );
@@ -248,7 +240,7 @@ fn profiles(page: &mut String, study: &Study) {
         let _ = write!(
             page,
             "<tr><td class=\"l\">{}</td><td>{:.0e}</td><td>{}</td>",
-            escaped(&row.method),
+            escape(&row.method),
             row.request,
             duration(row.cost.solve)
         );

@@ -1,8 +1,9 @@
 //! Studies as one SVG picture: a small chart of time over error for each, for pages that cannot
 //! show HTML.
 
-use super::page::{charts, colour, escaped, methods};
+use super::page::{charts, colour, methods};
 use super::{Study, chart};
+use quick_xml::escape::escape;
 use std::fmt::Write as _;
 
 /// Charts side by side.
@@ -39,7 +40,7 @@ pub fn sheet(studies: &[Study]) -> String {
             "<rect x=\"{x}\" y=\"14\" width=\"16\" height=\"4\" fill=\"{}\"/><text x=\"{}\" y=\"21\">{}</text>",
             colour(method),
             x + 22.0,
-            escaped(method)
+            escape(*method)
         );
     }
     for (k, study) in studies.iter().enumerate() {
@@ -51,7 +52,7 @@ pub fn sheet(studies: &[Study]) -> String {
             "<g transform=\"translate({x:.1} {y:.1})\"><text class=\"t\" x=\"{:.1}\" y=\"19\">{}</text>\n\
              <g transform=\"translate(0 {TITLE}) scale({SCALE})\">{}</g></g>",
             SCALE * chart::MARGIN[0],
-            escaped(&study.name),
+            escape(&study.name),
             over_error.svg(&colour)
         );
     }

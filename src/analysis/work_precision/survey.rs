@@ -2,8 +2,7 @@
 
 use super::attempt::{Attempt, attempt};
 use super::distance::{self, Candidate, Table};
-use super::{Cost, Error, LeftOut, Outcome, Question, Reason, Reference, Row, Study};
-use crate::analysis::watch::Watch;
+use super::{Cost, Error, Follow, LeftOut, Outcome, Question, Reason, Reference, Row, Study};
 use crate::diagnostic;
 use crate::numeric::METHODS;
 use crate::results::Status;
@@ -27,11 +26,11 @@ struct Series {
 }
 
 impl Series {
-    /// Returns the processor time that a run at `request` will probably take, in s: as its order
-    /// says, or as the last two runs say if that is more.
-    fn expected(&self, request: f64) -> f64 {
+    /// Returns the processor time that a run at `request` will probably take, in s: the least and
+    /// the most of what its order and its last two runs say.
+    fn expected(&self, request: f64) -> [f64; 2] {
         let Some(&(last, seconds)) = self.times.last() else {
-            return 0.0;
+            return [0.0; 2];
         };
         let finer = (last / request).max(1.0);
         let by_order = Scalar::powf(finer, 1.0 / self.order as f64);
@@ -40,9 +39,12 @@ impl Series {
                 let exponent = Scalar::ln(seconds / less) / Scalar::ln(before / last);
                 Scalar::powf(finer, exponent.clamp(0.0, 2.0))
             }
-            _ => 1.0,
+            _ => by_order,
         };
-        seconds * by_order.max(seen).max(LEAST_GROWTH)
+        [
+            seconds * by_order.min(seen),
+            seconds * by_order.max(seen).max(LEAST_GROWTH),
+        ]
     }
 }
 
@@ -56,18 +58,19 @@ struct Done {
 /// A study on its way.
 struct Survey<'a> {
     question: &'a Question<'a>,
-    watch: &'a mut dyn Watch,
+    watch: &'a mut dyn Follow,
     series: Vec<Series>,
     done: Vec<Done>,
     spent: f64,
     interrupted: bool,
+    is_integrated: bool,
 }
 
 /// Runs the model of a question at all its requests by all methods that fit, cheap runs first.
 ///
 /// # Errors
 /// The model cannot be run by the first method at the first request.
-pub fn survey(question: &Question<'_>, watch: &mut dyn Watch) -> Result<Study, diagnostic::Error> {
+pub fn survey(question: &Question<'_>, watch: &mut dyn Follow) -> Result<Study, diagnostic::Error> {
     let mut survey = Survey {
         question,
         watch,
@@ -75,6 +78,7 @@ pub fn survey(question: &Question<'_>, watch: &mut dyn Watch) -> Result<Study, d
         done: Vec::new(),
         spent: 0.0,
         interrupted: false,
+        is_integrated: true,
     };
     let Some(&first) = question.requests.first() else {
         return Ok(survey.study());
@@ -94,17 +98,22 @@ impl Survey<'_> {
     fn begin(&mut self, request: f64) -> Result<(), diagnostic::Error> {
         let names = &self.question.methods;
         let first = names.first().map_or("AUTO", String::as_str);
+        self.watch.begins((first, request), 0.0);
         let attempt = attempt(self.question, (first, request), self.limit(), self.watch)?;
-        // where nothing is integrated, a method changes nothing
-        let is_integrated = attempt.is_integrated;
+        // a run that ended early may not have come to its integration
+        self.is_integrated = attempt.is_integrated || attempt.status != Status::Completed;
         let known = METHODS.iter().map(|m| m.name);
-        let fit: Vec<&str> = match (is_integrated, names.is_empty()) {
+        let fit: Vec<&str> = match (self.is_integrated, names.is_empty()) {
             (false, _) => vec![first],
             (true, true) => ["AUTO"].into_iter().chain(known).collect(),
             (true, false) => names.iter().map(String::as_str).collect(),
         };
         self.series = fit.into_iter().map(series).collect();
         self.take(0, request, Ok(attempt));
+        if !self.is_integrated {
+            // neither method nor request changes anything: one run says it all
+            self.series[0].next = self.question.requests.len();
+        }
         Ok(())
     }
 
@@ -113,8 +122,9 @@ impl Survey<'_> {
         (MOST_PER_RUN * (self.question.budget - self.spent)).max(0.0)
     }
 
-    /// Returns the series whose next run is expected to be the cheapest; closes those for which the
-    /// budget has nothing left.
+    /// Returns the series whose next run is expected to be the cheapest; closes those that cannot
+    /// reach the next wanted error with what the budget has left: runs on the way there would not
+    /// help.
     fn cheapest(&mut self) -> Option<usize> {
         let limit = self.limit();
         let requests = &self.question.requests;
@@ -126,11 +136,18 @@ impl Survey<'_> {
             if series.closed.is_some() {
                 continue;
             }
-            let expected = series.expected(request);
+            let [_, expected] = series.expected(request);
+            let wanted = self.question.wanted.iter().copied();
+            let wanted = wanted.filter(|w| *w <= request).fold(0.0, f64::max);
+            let [there, _] = series.expected(if wanted > 0.0 { wanted } else { request });
             if self.interrupted {
                 series.closed = Some(Reason::Interrupted);
             } else if expected > limit || limit <= 0.0 {
-                series.closed = Some(Reason::Budget { expected });
+                let to = request;
+                series.closed = Some(Reason::Budget { to, expected });
+            } else if there > limit {
+                let (to, expected) = (wanted, there);
+                series.closed = Some(Reason::Budget { to, expected });
             } else if best.is_none_or(|(least, _)| expected < least) {
                 best = Some((expected, k));
             }
@@ -143,6 +160,7 @@ impl Survey<'_> {
         let series = &self.series[k];
         let request = self.question.requests[series.next];
         let by = (series.method.as_str(), request);
+        self.watch.begins(by, self.spent);
         let found = attempt(self.question, by, self.limit(), self.watch);
         let refused = |error: diagnostic::Error| error.first().to_string();
         self.take(k, request, found.map_err(refused));
@@ -215,6 +233,7 @@ impl Survey<'_> {
             left_out,
             seconds: self.spent,
             interrupted: self.interrupted,
+            is_integrated: self.is_integrated,
         }
     }
 
@@ -286,7 +305,7 @@ fn compared(table: &Table, reference: Option<&Table>) -> Error {
 mod tests {
     use super::*;
     use crate::analysis::session::Options;
-    use crate::analysis::watch::Unwatched;
+    use crate::analysis::watch::{Unwatched, Watch};
     use crate::dataset::command::Script;
     use crate::model::Model;
 
@@ -294,12 +313,30 @@ mod tests {
         PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2, QP=1,0,0\nMARKER/3, PART=2\n\
         JOINT/1, REVOLUTE, I=3, J=1\nACCGRAV/JGRAV=-9.81\nEND\n";
 
-    fn study(budget: f64, methods: &[&str], watch: &mut dyn Watch) -> Study {
+    fn study(budget: f64, methods: &[&str], watch: &mut dyn Follow) -> Study {
         let model = Model::from_text(PENDULUM).expect("a model");
-        let script = Script::from_text("SIMULATE/DYNAMIC, END=1, STEPS=10\n").expect("commands");
+        asked(
+            &model,
+            "SIMULATE/DYNAMIC, END=1, STEPS=10\n",
+            (budget, methods),
+            watch,
+        )
+    }
+
+    fn study_of(model: &Model, commands: &str) -> Study {
+        asked(model, commands, (60.0, &[]), &mut Unwatched)
+    }
+
+    fn asked(
+        model: &Model,
+        commands: &str,
+        (budget, methods): (f64, &[&str]),
+        watch: &mut dyn Follow,
+    ) -> Study {
+        let script = Script::from_text(commands).expect("commands");
         let question = Question {
             name: "pendulum".into(),
-            model: &model,
+            model,
             steps: &script.steps,
             options: Options {
                 columns: vec!["DX(2,1)".into(), "DY(2,1)".into()],
@@ -308,6 +345,7 @@ mod tests {
             folders: Vec::new(),
             requests: vec![1e-3, 1e-6, 1e-9],
             methods: methods.iter().map(ToString::to_string).collect(),
+            wanted: vec![1e-4],
             budget,
             trusted: None,
         };
@@ -343,6 +381,63 @@ mod tests {
     }
 
     #[test]
+    fn a_method_that_cannot_reach_what_is_wanted_is_left_out_by_name() {
+        // of order two: a decade costs three times at least, here ten times
+        let slow = Series {
+            times: vec![(1e-2, 0.2), (1e-3, 2.0)],
+            next: 2,
+            ..series("HHT")
+        };
+        assert!(slow.expected(1e-6)[0] > 60.0 && slow.expected(1e-4)[1] < 25.0);
+        let model = Model::default();
+        let question = Question {
+            name: String::new(),
+            model: &model,
+            steps: &[],
+            options: Options::default(),
+            folders: Vec::new(),
+            requests: vec![1e-2, 1e-3, 1e-4, 1e-5, 1e-6],
+            methods: Vec::new(),
+            wanted: vec![1e-6],
+            budget: 60.0,
+            trusted: None,
+        };
+        let mut survey = Survey {
+            question: &question,
+            watch: &mut Unwatched,
+            series: vec![slow],
+            done: Vec::new(),
+            spent: 0.0,
+            interrupted: false,
+            is_integrated: true,
+        };
+        assert_eq!(survey.cheapest(), None);
+        let study = survey.study();
+        let [left] = study.left_out.as_slice() else {
+            panic!("{:?}", study.left_out);
+        };
+        assert_eq!((left.method.as_str(), left.requests.len()), ("HHT", 3));
+        assert!(left.why.to_string().contains("1e-6"), "{}", left.why);
+    }
+
+    #[test]
+    fn where_nothing_is_integrated_one_run_says_so() {
+        let text = PENDULUM.replace(
+            "ACCGRAV",
+            "MOTION/1, JOINT=1, ROTATION, FUNCTION=TIME\nACCGRAV",
+        );
+        let model = Model::from_text(&text).expect("a model");
+        let study = study_of(&model, "SIMULATE/KINEMATIC, END=1, STEPS=10\n");
+        assert_eq!((study.rows.len(), study.is_integrated), (1, false));
+        let told = study.text(&[1e-4, 1e-8]);
+        assert!(told.contains("nothing is integrated"), "{told}");
+        assert!(
+            !told.contains("--error") && !told.contains("for an error"),
+            "{told}"
+        );
+    }
+
+    #[test]
     fn an_interrupted_study_keeps_what_it_has() {
         /// Stops after some looks.
         struct Impatient(usize);
@@ -352,6 +447,7 @@ mod tests {
                 self.0 == 0
             }
         }
+        impl Follow for Impatient {}
         let study = study(60.0, &["DOP853", "RADAU5"], &mut Impatient(60));
         assert!(study.interrupted);
         assert!(study.rows.iter().any(|r| r.error().is_some()), "{study:?}");

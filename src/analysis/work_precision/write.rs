@@ -37,6 +37,7 @@ impl Study {
     /// Returns the sentence about the reference.
     pub fn about_reference(&self) -> String {
         match &self.reference {
+            _ if !self.is_integrated => "nothing is integrated here: the result is exact to rounding, whatever method and error are asked for".into(),
             None => "no run came to its end: there is no reference".into(),
             Some(Reference::Trusted) => "errors are against a trusted table".into(),
             Some(Reference::Run { best, other }) => {
@@ -120,7 +121,7 @@ impl Study {
             );
         }
         let _ = writeln!(text, "{}", self.about_reference());
-        for error in wanted {
+        for error in wanted.iter().filter(|_| self.is_integrated) {
             let _ = writeln!(text, "{}", self.recommendation(*error));
         }
         text
@@ -188,7 +189,8 @@ impl Study {
         let left_out = self.left_out.iter().map(|left| {
             json!({ "method": left.method, "requests": left.requests, "reason": left.why.to_string() })
         });
-        let recommended = wanted.iter().map(|&wanted| {
+        let asked = wanted.iter().filter(|_| self.is_integrated);
+        let recommended = asked.map(|&wanted| {
             let row = self.recommended(wanted);
             let chosen = row.map(|row| json!({ "method": row.method, "request": row.request }));
             json!({ "error": wanted, "run": chosen })
@@ -203,6 +205,7 @@ impl Study {
             "recommended": recommended.collect::<Vec<_>>(),
             "processor_seconds": self.seconds,
             "interrupted": self.interrupted,
+            "integrated": self.is_integrated,
             "versions": { "cognate": env!("CARGO_PKG_VERSION"), "report": 1 },
         })
     }
@@ -308,10 +311,14 @@ mod tests {
             left_out: vec![LeftOut {
                 method: "HHT".into(),
                 requests: vec![1e-6],
-                why: Reason::Budget { expected: 3.0 },
+                why: Reason::Budget {
+                    to: 1e-6,
+                    expected: 3.0,
+                },
             }],
             seconds: 1.0,
             interrupted: false,
+            is_integrated: true,
         }
     }
 

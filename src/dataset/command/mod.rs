@@ -10,6 +10,7 @@ mod apply;
 mod doubts;
 mod interpret;
 mod message_log;
+mod outside;
 mod unread;
 
 use super::idle::Idle;
@@ -142,6 +143,8 @@ pub struct Script {
     pub answered: bool,
     /// base name of the results, where one is given
     pub output: Option<String>,
+    /// 1-based line that gives it; 0: none of this file
+    pub output_line: usize,
     /// the commands, in order; FILE at the beginning is not among them
     pub steps: Vec<Step>,
     /// warnings and notes
@@ -198,7 +201,7 @@ impl Script {
     /// As [`Script::read`].
     pub fn from_message_log(path: impl AsRef<Path>) -> Result<Script, Error> {
         let path = path.as_ref();
-        let file = path.display().to_string();
+        let file = disk::text(&path);
         let log = Source::from_bytes(Some(&file), &load(path)?);
         let mut script = of_message_log(&log)?;
         script.path = Some(path.to_owned());
@@ -269,7 +272,7 @@ fn existing(path: PathBuf) -> PathBuf {
 const MAX_CALLS: usize = 16;
 
 fn read_called(path: &Path, depth: usize) -> Result<Script, Error> {
-    let file = path.display().to_string();
+    let file = disk::text(&path);
     let source = Source::from_bytes(Some(&file), &load(path)?);
     let mut script = of_source(&source)?;
     script.path = Some(path.to_owned());
@@ -310,6 +313,7 @@ fn of_source(source: &Source) -> Result<Script, Error> {
             (!text.is_empty() && !text.starts_with('!')).then(|| text.to_owned())
         };
         (script.model, script.output) = (answer(0), answer(1));
+        script.output_line = if script.output.is_some() { 2 } else { 0 };
         script.answered = script.model.is_some();
         // no answer to the second prompt: results are named like the dataset
         let blank = spans
@@ -397,6 +401,9 @@ fn take_steps(source: &Source, syntax: &Syntax, script: &mut Script, out: &mut V
         {
             script.answered &= model.is_none();
             script.model = model.clone().or(script.model.take());
+            if output_prefix.is_some() {
+                script.output_line = line;
+            }
             script.output = output_prefix.clone().or(script.output.take());
             continue;
         }

@@ -3,7 +3,7 @@
 use super::bad;
 use super::line::Line;
 use crate::diagnostic::{Diagnostic, Severity, Span};
-use crate::model::{Curve, ElementId, ElementKind, Matrix, MatrixLayout, Model, Place};
+use crate::model::{Curve, ElementKind, Matrix, MatrixLayout, Model, Place};
 use crate::scalar::Scalar;
 use crate::space::Vec3;
 
@@ -67,10 +67,8 @@ pub(super) fn make(
 
 /// Returns the points of a CURVE through points or of a MATRIX.
 fn points(model: &Model, name: &str) -> Result<Vec<Vec3<f64>>, Diagnostic> {
-    let id: ElementId = name.parse().map_err(|why: String| bad(why).help(PIECES))?;
-    if !model.has(id) {
-        return Err(bad(format!("{id} does not exist")).help(PIECES));
-    }
+    let kinds = [ElementKind::Matrix, ElementKind::Curve];
+    let id = model.find_of(&kinds, name).map_err(|d| d.help(PIECES))?;
     let matrix = match id.kind {
         ElementKind::Matrix => Some(id.number),
         ElementKind::Curve => {

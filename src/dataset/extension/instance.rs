@@ -3,7 +3,7 @@
 
 use super::{RigidBody, bad};
 use crate::diagnostic::{Diagnostic, Span, near_names};
-use crate::model::{ElementId, ElementKind, Model};
+use crate::model::{ElementKind, Model};
 use std::collections::BTreeSet;
 
 /// Returns the parts of an instance: a part by its number or name, or all parts of a subassembly.
@@ -11,25 +11,18 @@ use std::collections::BTreeSet;
 /// # Errors
 /// When there is no such instance.
 pub(super) fn parts(model: &Model, name: &str) -> Result<Vec<u32>, Diagnostic> {
-    if let Ok(id) = name.parse::<ElementId>() {
-        return match id.kind == ElementKind::Part && model.has(id) {
-            true => Ok(vec![id.number]),
-            false => Err(unknown(model, name)),
-        };
+    let part = model.find_of(&[ElementKind::Part], name);
+    if let Ok(id) = part {
+        return Ok(vec![id.number]);
     }
-    let named = |n: u32| model.parts.get(&n).and_then(|p| p.place.name.as_deref());
-    let all = || model.parts.keys().copied();
-    let own: Vec<u32> = all().filter(|&n| named(n) == Some(name)).collect();
-    let within = |n: &u32| named(*n).is_some_and(|part| lies_in(part, name));
-    match own.is_empty() {
-        false => Ok(own),
-        true => {
-            let members: Vec<u32> = all().filter(within).collect();
-            match members.is_empty() {
-                true => Err(unknown(model, name)),
-                false => Ok(members),
-            }
-        }
+    let named = |n: &u32| model.parts.get(n).and_then(|p| p.place.name.as_deref());
+    let within = |n: &u32| named(n).is_some_and(|part| lies_in(part, name));
+    let members: Vec<u32> = model.parts.keys().copied().filter(within).collect();
+    match (members.is_empty(), part) {
+        (false, _) => Ok(members),
+        // several of the name
+        (true, Err(d)) if model.has_name(&[ElementKind::Part], name) => Err(d),
+        (true, _) => Err(unknown(model, name)),
     }
 }
 

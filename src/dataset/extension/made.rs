@@ -15,10 +15,10 @@
 use super::line::Line;
 use super::{RigidBody, USAGE, bad, chain, euler, instance, next};
 use crate::dataset::syntax::Source;
-use crate::diagnostic::{Cause, Diagnostic, Span};
+use crate::diagnostic::{Diagnostic, Span};
 use crate::model::geometry::orientation;
 use crate::model::{
-    ElementId, ElementKind, Joint, JointKind, Marker, MarkerOwner, Model, Place, SpringDamper,
+    ElementKind, Joint, JointKind, Marker, MarkerOwner, Model, Place, SpringDamper,
 };
 use crate::space::{Mat3, Vec3, rotation};
 
@@ -324,18 +324,12 @@ fn spring(
     Ok(())
 }
 
-/// Returns a joint by its number or name.
+/// Returns a joint that is named.
 fn joint_named(model: &Model, name: &str) -> Result<Joint, Diagnostic> {
-    let id = name.parse::<ElementId>().ok();
-    let by_number = id.filter(|id| id.kind == ElementKind::Joint);
-    let by_number = by_number.and_then(|id| model.joints.get(&id.number));
-    let by_name = || {
-        let mut all = model.joints.values();
-        all.find(|j| j.place.name.as_deref() == Some(name))
+    let joint = || {
+        let id = model.find_of(&[ElementKind::Joint], name)?;
+        let joint = model.joints.get(&id.number).cloned();
+        joint.ok_or_else(|| model.no_element(id))
     };
-    by_number.or_else(by_name).cloned().ok_or_else(|| {
-        let what = format!("there is no joint `{name}`");
-        Diagnostic::error(Cause::UnknownElement, what)
-            .help("a spring-damper is at a joint, or between two instances")
-    })
+    joint().map_err(|d| d.help("a spring-damper is at a joint, or between two instances"))
 }

@@ -1,6 +1,7 @@
 //! Constraints: initial conditions of joints, what a motion drives, types of a coupler.
 
 use super::*;
+use crate::diagnostic::counted;
 
 /// Returns displacement and velocity in the order of a statement, and back: a statement that Adams
 /// View wrote carries the name it has there, and has the velocity first.
@@ -182,8 +183,9 @@ pub fn coupler_form(coupler: &mut Coupler) -> Done {
     }
     if coupler.rotational.len() != n {
         return Err(format!(
-            "TYPE names {} kinds for {n} joints",
-            coupler.rotational.len()
+            "TYPE names {} for {}",
+            counted(coupler.rotational.len(), "kind"),
+            counted(n, "joint")
         ));
     }
     if coupler.scales.len() + 1 == n {
@@ -192,7 +194,11 @@ pub fn coupler_form(coupler: &mut Coupler) -> Done {
     if coupler.scales.len() != n && coupler.user.is_none() {
         return Err(match coupler.scales.len() {
             0 => "a COUPLER needs SCALES".to_owned(),
-            s => format!("SCALES holds {s} numbers for {n} joints"),
+            s => format!(
+                "SCALES holds {} for {}",
+                counted(s, "number"),
+                counted(n, "joint")
+            ),
         });
     }
     Ok(())

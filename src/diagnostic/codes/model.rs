@@ -18,7 +18,7 @@ file that is no command is taken as the name of the dataset; FILE/MODEL=name is 
         name: "no_text",
         summary: "a file is no text",
         explanation: "\
-Datasets, command files and logs are lines of text in UTF-8, UTF-16 or Latin-1; a stray control character is passed over.
+Datasets, command files and logs are lines of text in UTF-8, UTF-16 or Windows-1252; a stray control character is passed over.
 What a program keeps in a format of its own (.bin, archives, pictures, Parquet) is exported as a dataset first.
 
     cognate run model.adm --end 1     and not model.bin",
@@ -522,6 +522,22 @@ was deleted, or is still to be written.
     JOINT/3, REVOLUTE, I=31, J=41      the markers that lie on each other",
     },
     Code {
+        name: "name_twice",
+        summary: "two elements of a kind have one name",
+        explanation: "\
+An element of a kind is called by its name at every door: in columns, by --only, in a sweep, in load cases. Two of one name are
+told apart by their numbers alone. Results give the further ones a number (`rod`, `rod_2`), so that no column is lost; a model
+that a program builds is refused, for there the name stands for the element. A notebook whose cell has run twice makes such
+models: begin the builder in the same cell.
+
+Markers may share a name on different parts, where `slider.tip` and `rod.tip` tell them apart.
+
+    ! adams_view_name='rod'
+    PART/2, MASS=1
+    ! adams_view_name='rod'
+    PART/3, MASS=1        name it otherwise",
+    },
+    Code {
         name: "stands_twice",
         summary: "two joints that are one",
         explanation: "\
@@ -613,6 +629,16 @@ the rotation. CV of a GEAR has z along the common velocity of both bodies where 
 the dataset places the parts.
 
     JOINT/1, HOOKE, I=12, J=21: turn MARKER/12 about its z until x of I is square to y of J",
+    },
+    Code {
+        name: "pinion_on_other_side",
+        summary: "a RACKPIN whose pinion lies on the other side of the rack than PD says",
+        explanation: "\
+J is the rack: it moves along z of J, and x of J is the axis of the pinion. A positive PD puts the centre of the pinion on the +y side
+of J, a negative one on the -y side. With the other sign the rack moves against the rim of its pinion. Nothing is said where the
+origin of I is hardly off the rack's line.
+
+    JOINT/5, RACKPIN, I=22, J=51, PD=-60      the pinion lies on the -y side of MARKER/51",
     },
     Code {
         name: "open_ends",

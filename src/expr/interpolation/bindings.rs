@@ -6,6 +6,7 @@
 use super::{Curve, Interpolation, Spline, Surface};
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::spline::Piecewise;
+use crate::random::Random;
 use crate::scalar::{Scalar, Table};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -198,14 +199,14 @@ impl Signal {
     /// density of its middle.
     fn new(density: impl Fn(f64) -> f64, f0: f64, f1: f64, n: usize, seed: i64) -> Self {
         let width = (f1 - f0) / n as f64;
-        let mut state = seed as u64;
+        let mut random = Random(seed as u64);
         let waves = (0..n)
             .map(|k| {
                 let f = f0 + (k as f64 + 0.5) * width;
                 (
                     TAU * f,
                     (2.0 * density(f) * width).sqrt(),
-                    TAU * uniform(&mut state),
+                    TAU * random.unit(),
                 )
             })
             .collect();
@@ -228,13 +229,4 @@ impl Table for Signal {
             })
             .sum()
     }
-}
-
-/// Returns the next of a sequence of numbers between 0 and 1 (SplitMix64).
-fn uniform(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let mut z = *state;
-    z = (z ^ z >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-    ((z ^ z >> 31) >> 11) as f64 / (1u64 << 53) as f64
 }

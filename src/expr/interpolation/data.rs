@@ -1,5 +1,6 @@
 //! The data that expressions read: splines, families of curves over z, and curves in space.
 
+use crate::diagnostic::counted;
 use crate::expr::spline::{Ends, Extrapolation, Piecewise, UnfitData, check};
 use crate::scalar::{Scalar, Table};
 use std::sync::{Arc, OnceLock};
@@ -50,9 +51,9 @@ impl Spline {
     ) -> Result<Self, UnfitData> {
         if y.len() != z.len().max(1) {
             return Err(UnfitData(format!(
-                "{} curves for {} values of z",
-                y.len(),
-                z.len()
+                "{} for {} of z",
+                counted(y.len(), "curve"),
+                counted(z.len(), "value")
             )));
         }
         if z.iter().any(|z| !z.is_finite()) || z.windows(2).any(|w| w[0] >= w[1]) {
@@ -193,8 +194,8 @@ impl Curve {
         };
         if points.len() < 4 {
             return Err(UnfitData(format!(
-                "{} points, but at least 4 are needed",
-                points.len()
+                "{}, but at least 4 are needed",
+                counted(points.len(), "point")
             )));
         }
         let gap = |a: &[f64; 3], b: &[f64; 3]| {

@@ -11,7 +11,7 @@ use super::code::{Code, Core, Instruction, gathered, partial};
 use super::machine::{Columns, written_out};
 use super::operation::{BinaryOp, Comparison, UnaryOp, from_mask};
 use super::run::Program;
-use crate::diagnostic::{Cause, Diagnostic, Error};
+use crate::diagnostic::{Cause, Diagnostic, Error, counted};
 use crate::expr::functions::Function;
 use crate::expr::functions::prepared::{self, Prepared};
 use crate::expr::functions::step::{cubic, haversine, quintic};
@@ -265,7 +265,11 @@ impl Batch {
         let mut used = self.core.used.iter().map(|&k| k as usize);
         if let Some(k) = used.find(|&k| inputs[k].len() < n) {
             let (input, had) = (self.program.inputs()[k], inputs[k].len());
-            let what = format!("the column of {input} has {had} values for {n} points");
+            let what = format!(
+                "the column of {input} has {} for {}",
+                counted(had, "value"),
+                counted(n, "point")
+            );
             return Err(Diagnostic::error(Cause::MissingValue, what).into());
         }
         if let Some(whole) = &self.whole

@@ -3,7 +3,7 @@
 use super::code::Core;
 use super::input::Input;
 use super::machine::{Alike, Engine, Machine};
-use crate::diagnostic::{Cause, Diagnostic, Error};
+use crate::diagnostic::{Cause, Diagnostic, Error, counted};
 use crate::scalar::{Scalar, Table};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -331,8 +331,8 @@ impl Program {
         if places > outputs {
             let what = format!(
                 "{} asked for, the program has {}",
-                number(places, "output"),
-                number(outputs, "output")
+                counted(places, "output"),
+                counted(outputs, "output")
             );
             wrong.push(Diagnostic::error("unfit_value", what));
         }
@@ -378,17 +378,9 @@ pub(in crate::expr) fn too_few(values: usize, names: &[String]) -> Diagnostic {
     let was = if values == 1 { "was" } else { "were" };
     let what = format!(
         "{} {was} given for {}: {}",
-        number(values, "value"),
-        number(names.len(), "input"),
+        counted(values, "value"),
+        counted(names.len(), "input"),
         names.join(", ")
     );
     Diagnostic::error(Cause::MissingValue, what)
-}
-
-/// Words a number of things.
-fn number(n: usize, one: &str) -> String {
-    match n {
-        1 => format!("1 {one}"),
-        n => format!("{n} {one}s"),
-    }
 }

@@ -166,6 +166,40 @@ pub(super) fn axes_are_aligned(model: &Model, out: &mut Out) {
     }
 }
 
+/// A warning of every RACKPIN whose pinion lies on the other side of the rack than its PD says.
+pub(super) fn pinions_lie_on_their_side(model: &Model, out: &mut Out) {
+    /// Part of the radius within which the side of the centre is open.
+    const OPEN: f64 = 0.1;
+    for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
+        let Some(pd) = joint.pd.filter(|_| joint.kind == JointKind::Rackpin) else {
+            continue;
+        };
+        let markers = [joint.i, joint.j].map(|m| marker_frame(model, m));
+        let [Some(pinion), Some(rack)] = markers else {
+            continue;
+        };
+        let height = (pinion.position - rack.position).dot(rack.rotation.column(1));
+        let is_open = height.abs() <= OPEN * pd.abs() / 2.0;
+        if is_open || height * pd >= 0.0 || !height.is_finite() {
+            continue;
+        }
+        let [i, j] = [joint.i, joint.j].map(|m| model.called(ElementKind::Marker.id(m)));
+        let [pd, height, other] = [pd, height, -pd].map(magnitudes::short);
+        let who = (ElementKind::Joint.id(id), &joint.place);
+        let said = format!(
+            "PD={pd} puts the pinion on the {} side of {j} (the rack), but the origin of {i} stands at y = {height} there: \
+             the rack moves against the rim of its pinion",
+            if joint.pd > Some(0.0) { "+y" } else { "-y" },
+        );
+        warn(out, "pinion_on_other_side", who, said);
+        at_argument(out, "PD");
+        advise(
+            out,
+            format!("write PD={other}, or turn {j} by 180 deg about its x axis"),
+        );
+    }
+}
+
 /// Returns all that is not aligned as the dataset places the parts.
 pub(crate) fn misaligned(model: &Model) -> Vec<Misalignment> {
     let mut found = Vec::new();

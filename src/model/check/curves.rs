@@ -1,6 +1,7 @@
 //! Curves: enough points of three coordinates, of a kind that is said, and closed ends that meet.
 
 use super::*;
+use crate::diagnostic::counted;
 use crate::expr::interpolation::CLOSING_TOLERANCE;
 
 pub(super) fn curves_have_points(model: &Model, out: &mut Out) {
@@ -32,8 +33,8 @@ pub(super) fn curves_have_points(model: &Model, out: &mut Out) {
         }
         if points.columns != 3 {
             let message = format!(
-                "its MATRIX has {} columns; a point has three",
-                points.columns
+                "its MATRIX has {}; a point has three",
+                counted(points.columns, "column")
             );
             error(out, "wrong_count", who, message);
             continue;
@@ -43,7 +44,10 @@ pub(super) fn curves_have_points(model: &Model, out: &mut Out) {
                 out,
                 "few_points",
                 who,
-                format!("{} points; a curve needs four or more", points.rows),
+                format!(
+                    "{}; a curve needs four or more",
+                    counted(points.rows, "point")
+                ),
             );
         }
         let all = points.by_rows().unwrap_or_default();

@@ -310,7 +310,7 @@ pub(super) fn stiffness_can_be_resolved(model: &Model, out: &mut Out) {
 }
 
 /// Writes a number with three to four digits, as people write it.
-fn short(x: f64) -> String {
+pub(super) fn short(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return x.to_string();
     }

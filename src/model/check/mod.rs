@@ -19,6 +19,7 @@ mod forces;
 mod held;
 mod ignored;
 mod magnitudes;
+pub(crate) mod names;
 mod output;
 pub(crate) mod references;
 mod signs;
@@ -43,6 +44,7 @@ const ONLY_WARN: &[&str] = &[
     "beams have their length",
     "friction has the size of joints",
     "stiffness can be resolved",
+    "names are used once",
 ];
 
 /// Returns what is doubted of settings that a command changes, of which the model has nothing else.
@@ -90,6 +92,10 @@ pub const RULES: &[Rule] = &[
     ("forces have data", forces::forces_have_data),
     ("contacts have their law", contacts::contacts_have_their_law),
     ("axes are aligned", alignment::axes_are_aligned),
+    (
+        "pinions lie on their side",
+        alignment::pinions_lie_on_their_side,
+    ),
     ("requests ask something", output::requests_ask_something),
     ("forces act where asked", between::forces_act_where_asked),
     (
@@ -124,6 +130,7 @@ pub const RULES: &[Rule] = &[
         "stiffness can be resolved",
         magnitudes::stiffness_can_be_resolved,
     ),
+    ("names are used once", names::names_are_used_once),
     ("laws resist", signs::laws_resist),
     ("contacts resist", signs::contacts_resist),
     ("shapes have sizes", signs::shapes_have_sizes),

@@ -1,6 +1,7 @@
 //! Requests and units.
 
 use super::*;
+use crate::diagnostic::counted;
 
 /// Components of a REQUEST.
 const COMPONENTS: usize = 8;
@@ -16,8 +17,8 @@ pub(super) fn requests_ask_something(model: &Model, out: &mut Out) {
         let is_beyond = |all: &[String]| all.iter().skip(COMPONENTS).any(|t| !t.is_empty());
         for (name, all) in texts.into_iter().filter(|t| is_beyond(t.1)) {
             let what = format!(
-                "{name} has {} texts, a REQUEST {COMPONENTS} components",
-                all.len()
+                "{name} has {}, but a REQUEST has {COMPONENTS}",
+                counted(all.len(), "text")
             );
             warn(out, "wrong_count", who, what);
             at_argument(out, name);

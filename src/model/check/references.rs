@@ -53,8 +53,11 @@ pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
             continue;
         }
         match text.sound_ast() {
-            Err(d) => {
+            Err(mut d) => {
                 let at = d.span.map_or(0, |s| s.start);
+                if let Some(advice) = numbers_for(model, text) {
+                    d.help = vec![advice];
+                }
                 out.push(placed(
                     who(strip(marks_told(d, owned.formula))),
                     owned.formula,
@@ -84,9 +87,19 @@ pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
 
 impl Model {
     /// Returns the mistakes in an expression that is not part of the model but reads it, as a
-    /// column of results does: what cannot be read, elements that do not exist. Places count in
-    /// its text.
+    /// column of results does: what cannot be read, elements that do not exist. It may call
+    /// elements by their names, see [`Model::numbered`]. Places count in its text.
     pub fn check_expression(&self, text: &str) -> Vec<Diagnostic> {
+        let numbered = match self.numbered(text) {
+            Ok(numbered) => numbered,
+            Err(wrong) => return wrong,
+        };
+        let found = self.check_numbered(&numbered.text);
+        let as_typed = found.into_iter().map(|d| numbered.as_typed(d));
+        as_typed.collect()
+    }
+
+    fn check_numbered(&self, text: &str) -> Vec<Diagnostic> {
         let expr = match Expr::parse(text) {
             Ok(expr) => expr,
             Err(error) => return error.into(),
@@ -105,6 +118,16 @@ impl Model {
         }
         out
     }
+}
+
+/// Returns advice on a function that calls elements by their names, which datasets do not.
+fn numbers_for(model: &Model, text: &str) -> Option<String> {
+    let numbered = model.numbered(text).ok().filter(|n| n.text != text)?;
+    let is_sound = Expr::parse(&numbered.text).is_ok();
+    is_sound.then(|| {
+        let numbers = &numbered.text;
+        format!("datasets call elements by their numbers: {numbers}")
+    })
 }
 
 /// Further places of the expression as sentences, with their lines and columns in the file.

@@ -1,6 +1,7 @@
 //! Data and system elements: splines, arrays, and the arrays that systems fill and read.
 
 use super::*;
+use crate::diagnostic::counted;
 
 pub(super) fn splines_are_functions(model: &Model, out: &mut Out) {
     for (&id, s) in &model.splines {
@@ -28,7 +29,7 @@ pub(super) fn splines_are_functions(model: &Model, out: &mut Out) {
                 out,
                 "wrong_count",
                 who,
-                format!("X has {n} numbers, Y{which} has {}", y.len()),
+                format!("X has {}, Y{which} has {}", counted(n, "number"), y.len()),
             );
         }
         for (name, list) in [("X", &s.x), ("Z (the first numbers of each Y)", &s.z)] {
@@ -42,7 +43,7 @@ pub(super) fn splines_are_functions(model: &Model, out: &mut Out) {
                 out,
                 "few_points",
                 who,
-                format!("{n} points: a cubic spline needs four or more"),
+                format!("{}: a cubic spline needs four or more", counted(n, "point")),
             );
         }
     }
@@ -84,7 +85,7 @@ pub(super) fn arrays_have_their_size(model: &Model, out: &mut Out) {
         } else if m.by_rows().is_none() {
             let message = match &m.layout {
                 MatrixLayout::Sparse { rows, columns } => format!(
-                    "SPARSE with {} I, {} J and {} VALUES in {} rows and {} columns",
+                    "SPARSE has {} I, {} J and {} VALUES, within {} by {}",
                     rows.len(),
                     columns.len(),
                     m.values.len(),
@@ -92,8 +93,8 @@ pub(super) fn arrays_have_their_size(model: &Model, out: &mut Out) {
                     m.columns
                 ),
                 _ => format!(
-                    "{} rows of {} make {}, but VALUES holds {}",
-                    m.rows,
+                    "{} of {} make {}, but VALUES holds {}",
+                    counted(m.rows, "row"),
                     m.columns,
                     m.rows.saturating_mul(m.columns),
                     m.values.len()

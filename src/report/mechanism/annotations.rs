@@ -6,10 +6,9 @@
 
 use super::bodies::Anchor;
 use super::{Bodies, Track};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Span};
 use crate::model::{ElementId, ElementKind, Model};
 use crate::space::Vec3;
-use std::str::FromStr;
 
 /// The axes of a marker.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +28,7 @@ pub struct ActionVector {
     pub at: Anchor,
 }
 
-/// The numbers of two markers whose distance is wanted, written `I,J`.
+/// The numbers of two markers whose distance is wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pair {
     /// the marker that it is measured to
@@ -38,24 +37,38 @@ pub struct Pair {
     pub j: u32,
 }
 
-impl FromStr for Pair {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = |text: &str| {
-            let text = text.trim();
-            match text.parse::<ElementId>() {
-                Ok(id) if id.kind == ElementKind::Marker => Some(id.number),
-                Ok(_) => None,
-                Err(_) => text.parse().ok(),
-            }
+impl Pair {
+    /// Reads two markers of a model, `20,10` or `slider.cm,MARKER/10`.
+    ///
+    /// # Errors
+    /// A text of another form, and names of no marker or of several, at their places.
+    pub fn of(model: &Model, text: &str) -> Result<Self, Diagnostic> {
+        let marker = |start: usize, end: usize| {
+            let found = model.find_of(&[ElementKind::Marker], &text[start..end]);
+            let id = found.map_err(|d| d.at(text, Span::new(start, end)))?;
+            Ok::<u32, Diagnostic>(id.number)
         };
-        let pair = text.split_once(',');
-        let pair = pair.and_then(|(i, j)| Some((number(i)?, number(j)?)));
-        let (i, j) = pair.ok_or("two markers are wanted, as 20,10")?;
-        Ok(Self { i, j })
+        let pair = |at: usize| {
+            let (i, j) = (marker(0, at)?, marker(at + 1, text.len())?);
+            Ok(Self { i, j })
+        };
+        // names may have commas
+        let mut told = None;
+        for (at, _) in text.match_indices(',').take(MOST_COMMAS) {
+            match pair(at) {
+                Ok(pair) => return Ok(pair),
+                Err(d) => told = told.or(Some(d)),
+            }
+        }
+        Err(told.unwrap_or_else(|| {
+            let what = format!("`{text}` is not two markers, as 20,10");
+            Diagnostic::error("unknown_marker", what)
+        }))
     }
 }
+
+/// Commas of a text at which two markers may part.
+const MOST_COMMAS: usize = 8;
 
 /// The distance of two markers, shown as a line with its value.
 #[derive(Clone, Copy, Debug)]
@@ -124,11 +137,13 @@ mod tests {
 
     #[test]
     fn a_pair_is_two_markers_in_either_spelling() {
-        let pair = |text: &str| text.parse::<Pair>().map(|p| (p.i, p.j));
-        assert_eq!(pair("20,10"), Ok((20, 10)));
-        assert_eq!(pair("MARKER/20, 10"), Ok((20, 10)));
+        let model = "PAIR\nPART/1, GROUND\nMARKER/10, PART=1\nMARKER/20, PART=1\nEND\n";
+        let model = Model::from_text(model).unwrap();
+        let pair = |text: &str| Pair::of(&model, text).map(|p| (p.i, p.j)).ok();
+        assert_eq!(pair("20,10"), Some((20, 10)));
+        assert_eq!(pair("MARKER/20, 10"), Some((20, 10)));
         for wrong in ["20", "20,", "PART/2,10", "20,10,30", "a,b"] {
-            assert!(pair(wrong).is_err(), "{wrong}");
+            assert_eq!(pair(wrong), None, "{wrong}");
         }
     }
 }

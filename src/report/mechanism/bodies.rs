@@ -5,12 +5,15 @@ use crate::model::{ElementId, ElementKind, Model, geometry};
 use crate::space::{Frame, Vec3};
 use std::collections::BTreeMap;
 
+/// Name of ground where the dataset gives none.
+const GROUND: &str = "ground";
+
 /// A body that is drawn.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// the part or point mass; ground too
     pub id: ElementId,
-    /// its name in the dataset, or `PART_2`
+    /// its name in the dataset, or `PART_2`; `ground` of ground without a name
     pub name: String,
     /// whether it is ground
     pub is_ground: bool,
@@ -46,7 +49,7 @@ impl Bodies {
     /// directions, have no place.
     pub fn new(model: &Model) -> Self {
         let mut this = Self::default();
-        let mut index = BTreeMap::new();
+        let (mut index, labels) = (BTreeMap::new(), model.labels());
         for (id, part) in model.bodies() {
             let rotation = geometry::orientation(&part.orientation, part.qg);
             let placed = Frame {
@@ -63,7 +66,10 @@ impl Bodies {
             index.insert(id, this.all.len());
             this.all.push(Body {
                 id,
-                name: name_of(part.place.name.as_deref(), id),
+                name: match (&part.place.name, is_ground) {
+                    (None, true) => GROUND.to_owned(),
+                    _ => labels.name(model, id),
+                },
                 is_ground,
                 colour,
                 placed: if is_ground { Frame::identity() } else { placed },
@@ -104,9 +110,4 @@ impl Bodies {
     pub fn find(&self, id: ElementId) -> Option<usize> {
         self.all.iter().position(|b| b.id == id)
     }
-}
-
-/// Returns the name of an element among results: that of the dataset, or `KEYWORD_number`.
-pub fn name_of(given: Option<&str>, id: ElementId) -> String {
-    given.map_or_else(|| format!("{}_{}", id.kind, id.number), str::to_owned)
 }

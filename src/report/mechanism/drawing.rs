@@ -287,7 +287,11 @@ impl Pen<'_> {
             )
         };
         let with_joints = self.wanted.symbols.has_joints();
-        let shown = |p: &&Piece| with_joints || !matches!(p.role, Role::Joint | Role::Ground);
+        let shown = |p: &&Piece| match p.role {
+            Role::Joint => with_joints && track.is_active(p.element, row),
+            Role::Ground => with_joints,
+            Role::Shape | Role::Link | Role::Mass => true,
+        };
         self.pictured.pieces.iter().filter(shown).map(of).collect()
     }
 
@@ -413,7 +417,9 @@ impl Pen<'_> {
             };
             (s.element, (from.1 + to.1) / 2.0, vec![stroke])
         };
-        self.pictured.stretched.iter().map(of).collect()
+        let acts = |s: &&super::Stretched| track.is_active(s.element, row);
+        let stretched = self.pictured.stretched.iter();
+        stretched.filter(acts).map(of).collect()
     }
 }
 

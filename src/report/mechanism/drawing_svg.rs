@@ -2,6 +2,7 @@
 
 use super::drawing::{Drawing, Mark, Point, shaded};
 use super::labels::{Area, Placed, placed, written};
+use crate::diagnostic::counted;
 use std::collections::BTreeSet;
 
 /// Width of a margin, in px.
@@ -64,8 +65,9 @@ pub fn svg(drawing: &Drawing, width: f64, unit: &str) -> String {
     }
     if left_out > 0 {
         text += &format!(
-            "<text x=\"12\" y=\"{}\" font-size=\"11\" fill=\"#66707c\">{left_out} names without room are left out</text>\n",
+            "<text x=\"12\" y=\"{}\" font-size=\"11\" fill=\"#66707c\">left out for want of room: {}</text>\n",
             short(height - 10.0),
+            counted(left_out, "name"),
         );
     }
     paper.bar([width, height], unit, &mut text);
@@ -199,10 +201,7 @@ impl Paper {
                 middle
             }
         };
-        let escaped = word
-            .replace('&', "&amp;")
-            .replace('<', "&lt;")
-            .replace('>', "&gt;");
+        let escaped = quick_xml::escape::partial_escape(word);
         let look =
             "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"4\" paint-order=\"stroke\"";
         *text += &format!(

@@ -12,6 +12,8 @@ mod channels;
 mod colours;
 pub mod drawing;
 pub mod drawing_svg;
+#[cfg(feature = "gif")]
+pub mod film;
 pub mod glb;
 mod labels;
 mod links;
@@ -37,6 +39,7 @@ use crate::model::{Element, ElementId, ElementKind, Model};
 use crate::results::Run;
 use crate::space::Vec3;
 use solid::along_z;
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use symbols::Symbols;
 
@@ -197,6 +200,8 @@ pub struct Pictured {
     pub view: View,
     /// sizes of symbols
     pub sizes: Sizes,
+    /// the unit of time, in s
+    pub second: f64,
 }
 
 impl Pictured {
@@ -208,6 +213,15 @@ impl Pictured {
     pub fn new(model: &Model, run: &Run, surfaces: &Surfaces) -> Result<Self, Diagnostic> {
         let bodies = Bodies::new(model);
         let track = Track::new(model, &bodies, run)?;
+        // what acts at some time has a symbol
+        let never = track.never_active();
+        let model = &match never == model.inactive {
+            true => Cow::Borrowed(model),
+            false => Cow::Owned(Model {
+                inactive: never,
+                ..model.clone()
+            }),
+        };
         let (low, high) = extent(model, &bodies, &track, surfaces);
         let mut view = View::new(model, &bodies, low, high);
         let whole = view.size;
@@ -246,6 +260,7 @@ impl Pictured {
             stretched,
             view,
             sizes,
+            second: model.units.as_ref().map_or(1.0, |units| units.to_si()[3]),
         })
     }
 }

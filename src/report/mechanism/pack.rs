@@ -94,31 +94,12 @@ fn differences(numbers: &[i64], order: usize) -> Vec<u8> {
     bytes
 }
 
-/// Returns bytes in the 64 letters that any text may hold.
-pub fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for three in bytes.chunks(3) {
-        let at = |k: usize| u32::from(three.get(k).copied().unwrap_or(0));
-        let all = at(0) << 16 | at(1) << 8 | at(2);
-        for k in 0..4 {
-            let letter = LETTERS[(all >> (18 - 6 * k) & 63) as usize];
-            text.push(if k <= three.len() {
-                letter as char
-            } else {
-                '='
-            });
-        }
-    }
-    text
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     /// Reads a column back, as the page does.
-    fn read(column: &Value, bytes: &[u8], n: usize) -> Vec<f64> {
+    pub(in super::super) fn read(column: &Value, bytes: &[u8], n: usize) -> Vec<f64> {
         let mut at = column[0].as_u64().unwrap() as usize;
         let (quantum, order) = (column[1].as_f64().unwrap(), column[2].as_u64().unwrap());
         let (mut before, mut slope) = (0.0, 0.0);
@@ -186,19 +167,5 @@ mod tests {
         );
         let (columns, _) = packed.finish();
         assert_eq!(columns[0][3], json!([[1, 3], [4, 5]]));
-    }
-
-    #[test]
-    fn letters_of_bytes_are_those_of_everybody() {
-        let known = [
-            ("", ""),
-            ("f", "Zg=="),
-            ("fo", "Zm8="),
-            ("foo", "Zm9v"),
-            ("foobar", "Zm9vYmFy"),
-        ];
-        for (bytes, text) in known {
-            assert_eq!(base64(bytes.as_bytes()), text);
-        }
     }
 }

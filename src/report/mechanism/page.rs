@@ -4,15 +4,15 @@
 //! data of the runs, as text: a description in JSON, then packed columns (`pack.rs`), all
 //! compressed. The viewer reads them with what browsers have; it runs from `file:`.
 
-use super::bodies::name_of;
 use super::channels::Channels;
-use super::pack::{Packed, base64};
+use super::pack::Packed;
 use super::{Form, Look, Pictured, Role, Track};
 use crate::dataset::surface::Surfaces;
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementId, Family, Model};
 use crate::results::{Kind, Run, msg};
 use crate::space::rotation;
+use base64::prelude::{BASE64_STANDARD, Engine};
 use flate2::Compression;
 use flate2::write::{GzDecoder, GzEncoder};
 use serde_json::{Value, json};
@@ -21,6 +21,11 @@ use std::io::Write;
 
 /// The viewer: three.js, uPlot and our own script, bundled and compressed.
 static VIEWER: &[u8] = include_bytes!("../../../assets/viewer.js.gz");
+/// Its SHA-256 in base 64: the only script that the page runs.
+static VIEWER_SHA256: &str = include_str!("../../../assets/viewer.sha256");
+
+/// Look of what the page says before it is shown, or in its place.
+const FAILURE_STYLE: &str = "#failure{position:fixed;inset:0;z-index:99;display:grid;place-content:center;     text-align:center;padding:24px;font:16px/1.5 system-ui,sans-serif;background:#eef1f4f2;color:#22262c}     #failure[hidden]{display:none}";
 
 /// Quantum of positions, as a part of the size of the mechanism.
 const POSITION_QUANTUM: f64 = 4e-6;
@@ -56,6 +61,7 @@ pub fn page(model: &Model, pictured: &Pictured, runs: &[Shown<'_>]) -> String {
     let mut geometry = Geometry::default();
     let mut data = json!({
         "title": model.title.trim(),
+        "second": pictured.second,
         "unit": runs.first().map(|r| r.run.units.length.clone()),
         "bodies": bodies(pictured),
         "pieces": pieces(pictured, &mut geometry),
@@ -79,6 +85,7 @@ pub fn page(model: &Model, pictured: &Pictured, runs: &[Shown<'_>]) -> String {
         "view": {
             "centre": pictured.view.centre.0, "size": pictured.view.size, "eye": pictured.view.eye.0,
             "up": pictured.view.up.0, "planar": pictured.view.is_planar, "joint": pictured.sizes.joint,
+            "gravity": model.gravity,
         },
         "tree": tree(model, pictured),
     });
@@ -97,7 +104,10 @@ pub fn page(model: &Model, pictured: &Pictured, runs: &[Shown<'_>]) -> String {
     all.extend(text.as_bytes());
     all.resize(all.len().next_multiple_of(4), b' ');
     all.extend(bytes);
-    document(&title(model, runs), &base64(&compressed(&all)))
+    document(
+        &title(model, runs),
+        &BASE64_STANDARD.encode(compressed(&all)),
+    )
 }
 
 fn title(model: &Model, runs: &[Shown<'_>]) -> String {
@@ -109,20 +119,20 @@ fn title(model: &Model, runs: &[Shown<'_>]) -> String {
 
 /// Returns the document around the data.
 fn document(title: &str, data: &str) -> String {
-    let escaped = |c: char| match c {
-        '&' => "&amp;".to_owned(),
-        '<' => "&lt;".to_owned(),
-        '>' => "&gt;".to_owned(),
-        c => c.to_string(),
-    };
-    let title: String = title.chars().map(escaped).collect();
-    // inside a script nothing may look like its end
-    let viewer = viewer().replace("</script", "<\\/script");
+    let title = quick_xml::escape::partial_escape(title);
+    let viewer = viewer();
+    // the one script, styles, nothing from outside and nothing to outside
+    let policy = format!(
+        "default-src 'none'; script-src 'sha256-{}'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'",
+        VIEWER_SHA256.trim()
+    );
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta name=\"generator\" content=\"cognate {}\">\n<title>{title}</title>\n</head>\n<body>\n\
-         <noscript>This page needs JavaScript; it loads nothing from outside.</noscript>\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
+         <meta name=\"generator\" content=\"cognate {}\">\n<title>{title}</title>\n<style>{FAILURE_STYLE}</style>\n</head>\n<body>\n\
+         <div id=\"failure\" role=\"alert\">This page is not shown yet. It needs JavaScript and loads nothing from outside; \
+         where these words stay, the browser runs no scripts here or is too old.</div>\n\
          <script id=\"data\" type=\"application/octet-stream\">{data}</script>\n<script>{viewer}</script>\n</body>\n</html>\n",
         env!("CARGO_PKG_VERSION"),
     )
@@ -143,11 +153,13 @@ fn compressed(bytes: &[u8]) -> Vec<u8> {
     written.unwrap_or_default()
 }
 
-/// Corners, normals and triangles of all surfaces.
+/// Corners, normals and triangles of all surfaces, each of equal ones once.
 #[derive(Default)]
 struct Geometry {
     floats: Vec<f32>,
     indices: Vec<u32>,
+    /// by a number that equal surfaces share, where surfaces are
+    known: BTreeMap<u64, Vec<[usize; 4]>>,
 }
 
 impl Geometry {
@@ -155,16 +167,30 @@ impl Geometry {
     /// normals stand behind the corners.
     fn push(&mut self, solid: &super::Solid) -> Value {
         let triangles = solid.triangles();
-        let place = json!([
-            self.floats.len(),
-            triangles.points.len(),
-            self.indices.len(),
-            3 * triangles.triangles.len()
-        ]);
-        self.floats.extend(triangles.points.iter().flatten());
-        self.floats.extend(triangles.normals.iter().flatten());
-        self.indices.extend(triangles.triangles.iter().flatten());
-        place
+        let corners = triangles.points.iter().chain(&triangles.normals);
+        let floats: Vec<f32> = corners.flatten().copied().collect();
+        let indices: Vec<u32> = triangles.triangles.iter().flatten().copied().collect();
+        let bits = floats
+            .iter()
+            .map(|x| x.to_bits())
+            .chain(indices.iter().copied());
+        // FNV-1a, by words
+        let key = bits.fold(0xcbf2_9ce4_8422_2325_u64, |key, word| {
+            (key ^ u64::from(word)).wrapping_mul(0x100_0000_01b3)
+        });
+        let known = self.known.entry(key).or_default();
+        let is_same = |[f, n, k, m]: &&[usize; 4]| {
+            self.floats[*f..f + 6 * n] == floats[..] && self.indices[*k..k + m] == indices[..]
+        };
+        if let Some(place) = known.iter().find(is_same) {
+            return json!(place);
+        }
+        let counts = [triangles.points.len(), indices.len()];
+        let place = [self.floats.len(), counts[0], self.indices.len(), counts[1]];
+        known.push(place);
+        self.floats.extend(floats);
+        self.indices.extend(indices);
+        json!(place)
     }
 }
 
@@ -194,10 +220,11 @@ fn pieces(pictured: &Pictured, geometry: &mut Geometry) -> Vec<Value> {
                 value["line"] = json!(points);
                 value["closed"] = json!(closed);
             }
-            form @ (Form::Rod { .. } | Form::Ball { .. } | Form::Solid(_)) => {
-                let solid = form.solid(0.0);
+            Form::Rod { from, to, radius } => value["rod"] = json!([from, to, radius]),
+            Form::Ball { centre, radius } => value["ball"] = json!([centre, radius]),
+            Form::Solid(solid) => {
                 let is_flat = solid.smooth.iter().any(|s| !s);
-                value["mesh"] = geometry.push(&solid);
+                value["mesh"] = geometry.push(solid);
                 value["edges"] = json!(piece.role == Role::Shape && is_flat);
             }
         }
@@ -367,6 +394,11 @@ fn tree(model: &Model, pictured: &Pictured) -> Vec<Value> {
         (Family::Output, "outputs"),
         (Family::Data, "data"),
     ];
+    let labels = model.labels();
+    let name = |id: ElementId| match pictured.bodies.find(id) {
+        Some(body) => pictured.bodies.all[body].name.clone(),
+        None => labels.name(model, id),
+    };
     let mut all = Vec::new();
     for (family, title) in families {
         let of_family = |id: &ElementId| {
@@ -377,10 +409,10 @@ fn tree(model: &Model, pictured: &Pictured) -> Vec<Value> {
             let ends = element.ends().map(|[i, j]| [body_of(i), body_of(j)]);
             list.push(json!({
                 "id": id.to_string(),
-                "name": name_of(element.place().name.as_deref(), id),
+                "name": name(id),
                 "kind": kind(model, id),
                 "between": ends,
-                "inactive": model.inactive.contains(&id),
+                "off": pictured.track.off.get(&id),
                 "statement": statements.get(&id).map(|s| s.trim_end()),
             }));
         }

@@ -3,12 +3,12 @@
 //! Poses come from the columns of the run alone, those of the sets `…_XFORM`; a run that was read
 //! from a file of results does as well as one that has just been solved.
 
-use super::bodies::{Bodies, name_of};
+use super::bodies::Bodies;
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementId, Family, Model};
-use crate::results::{Entity, Kind, Run};
+use crate::results::{Entity, Kind, Run, Switched};
 use crate::space::{Frame, Vec3, rotation};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Components of a pose in a set of results: position and 3-1-3 angles in ground.
 const POSE: [&str; 6] = ["X", "Y", "Z", "PSI", "THETA", "PHI"];
@@ -30,6 +30,8 @@ pub struct Track {
     pub poses: Vec<Vec<Frame<f64>>>,
     /// forces that the run knows
     pub loads: Vec<Load>,
+    /// elements that are switched off at some rows: from a row to before another
+    pub off: BTreeMap<ElementId, Vec<[usize; 2]>>,
 }
 
 /// The force and torque of an element on its first marker, ground axes.
@@ -84,7 +86,43 @@ impl Track {
             ));
         }
         this.loads(model, run);
+        this.switches(model, run);
         Ok(this)
+    }
+
+    /// Finds the rows at which elements are switched off; a run that does not say so has those of
+    /// its model off all the time.
+    fn switches(&mut self, model: &Model, run: &Run) {
+        for (row, place) in self.rows.iter().enumerate() {
+            let before = |s: &&Switched| s.row <= run.released + place;
+            let inactive = match run.switched.iter().rfind(before) {
+                Some(switched) => &switched.inactive,
+                None if run.switched.is_empty() => &model.inactive,
+                None => continue,
+            };
+            for &id in inactive {
+                let spans = self.off.entry(id).or_default();
+                match spans.last_mut() {
+                    Some(last) if last[1] == row => last[1] = row + 1,
+                    _ => spans.push([row, row + 1]),
+                }
+            }
+        }
+    }
+
+    /// Returns whether an element acts at a row.
+    pub fn is_active(&self, id: ElementId, row: usize) -> bool {
+        let spans = self.off.get(&id).into_iter().flatten();
+        !spans
+            .into_iter()
+            .any(|&[from, to]| (from..to).contains(&row))
+    }
+
+    /// Returns the elements that act at no row.
+    pub fn never_active(&self) -> BTreeSet<ElementId> {
+        let all = [0, self.rows.len()];
+        let never = self.off.iter().filter(|(_, spans)| **spans == [all]);
+        never.map(|(&id, _)| id).collect()
     }
 
     /// Returns the frames of a body at all rows; a row without numbers repeats the one before.
@@ -113,8 +151,9 @@ impl Track {
     fn loads(&mut self, model: &Model, run: &Run) {
         let acts = |id: &ElementId| matches!(id.kind.family(), Family::Force | Family::Constraint);
         let mut seen = BTreeSet::new();
-        for (element, of) in model.elements().into_iter().filter(|(id, _)| acts(id)) {
-            let name = name_of(of.place().name.as_deref(), element);
+        let labels = model.labels();
+        for (element, _) in model.elements().into_iter().filter(|(id, _)| acts(id)) {
+            let name = labels.name(model, element);
             let mut sets = run.entities.iter();
             let is_its = |e: &&Entity| {
                 e.id == u64::from(element.number) && (e.entity == name || e.name == name)
@@ -163,9 +202,11 @@ fn columns_of<const N: usize>(entity: &Entity, names: [&str; N]) -> Option<[usiz
 /// Returns the columns of the pose of a body: those of its set, or columns of such names.
 fn pose_columns(run: &Run, id: ElementId, name: &str) -> Option<[usize; 6]> {
     let set = format!("{name}_XFORM");
-    let is_its =
+    let is_its = |e: &&Entity| e.name == set || e.entity == name;
+    let is_alike =
         |e: &&Entity| e.name.eq_ignore_ascii_case(&set) || e.entity.eq_ignore_ascii_case(name);
     let of_name = run.entities.iter().filter(is_its);
+    let of_name = of_name.chain(run.entities.iter().filter(is_alike));
     // a file of another program may have names of its own; then the number tells
     let of_number = (run.entities.iter())
         .filter(|e| e.kind == "Part" && e.id == u64::from(id.number) && id.number > 0);

@@ -133,7 +133,7 @@ impl Blocks {
             let bytes = match part {
                 Part::Memory(bytes) => Bytes::copy_from_slice(bytes),
                 Part::File(path) => {
-                    Bytes::from(disk::read(path).map_err(|e| unwritable(path, &e))?)
+                    Bytes::from(disk::read_own(path).map_err(|e| unwritable(path, &e))?)
                 }
             };
             append_groups(&mut writer, &bytes).map_err(|e| failed(&e))?;

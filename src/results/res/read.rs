@@ -1,9 +1,10 @@
 //! Reading `.res` files of the XML form, tag by tag.
 
 use super::{EXPRESSIONS, text};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, counted};
 use crate::results::{
-    Column, Component, Entity, Kind, Run, Sequence, Status, component_unit, malformed, number,
+    Column, Component, Entity, Kind, Run, Sequence, Status, component_unit, malformed, no_row,
+    number,
 };
 use quick_xml::Reader;
 use quick_xml::XmlVersion;
@@ -11,7 +12,8 @@ use quick_xml::events::{BytesStart, Event};
 
 /// Reads a `.res` file in XML or the old text form.
 ///
-/// Columns are named `ENTITY.COMPONENT`. Of several analyses in a file the first is read.
+/// Columns are named `ENTITY.COMPONENT`. Of several analyses in a file the first is read; of a file
+/// that is cut off its whole steps.
 ///
 /// # Errors
 /// When the contents are not of this format, with the line: markup that does not close, components
@@ -23,13 +25,22 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
         return text::read(&contents);
     }
     let markup = contents.strip_prefix('\u{feff}').unwrap_or(&contents);
-    let mut reader = Reader::from_str(markup);
+    // a tag that is cut off, or numbers of a step without its end
+    let whole = markup.rfind('>').map_or("", |end| &markup[..=end]);
+    let mut reader = Reader::from_str(whole);
     let mut reading = Reading::default();
     let outcome = reading.all(&mut reader);
     let position = usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX);
     let before = &contents.as_bytes()[..position.min(contents.len())];
     let line = || 1 + before.iter().filter(|&&b| b == b'\n').count();
-    outcome.map_err(|message| malformed(line(), message))?;
+    let n_lines = whole.bytes().filter(|&b| b == b'\n').count();
+    outcome.map_err(|message| no_row(malformed(line(), message), n_lines))?;
+    if !reading.is_complete {
+        if reading.run.rows() == 0 {
+            return Err(no_row(malformed(0, "there is no whole Step"), n_lines));
+        }
+        reading.run.note_cut();
+    }
     Ok(reading.run)
 }
 
@@ -45,6 +56,8 @@ struct Reading {
     row: Vec<f64>,
     /// whether text belongs to a step
     in_step: bool,
+    /// whether the end of the analysis has been read
+    is_complete: bool,
 }
 
 impl Reading {
@@ -163,7 +176,10 @@ impl Reading {
             "StepMap" => self.map_ends()?,
             "Step" => self.step_ends()?,
             "Data" => self.run.end(),
-            "Analysis" => return Ok(true),
+            "Analysis" => {
+                self.is_complete = true;
+                return Ok(true);
+            }
             _ => {}
         }
         Ok(false)
@@ -285,7 +301,9 @@ impl Reading {
         }
         if dense || last != Some(given as u64) {
             return Err(format!(
-                "a step has {given} values where there are {width} components"
+                "a step has {} where there are {}",
+                counted(given, "value"),
+                counted(width, "component")
             ));
         }
         // components were taken out of the map, not out of the steps: the number is the place

@@ -213,19 +213,8 @@ fn values(columns: &[(&[f64], u8)], place: usize, text: &mut Vec<u8>) {
     }
 }
 
-/// Escapes a text for an attribute: markup, and characters that XML cannot hold.
+/// Escapes a text for an attribute; characters that XML cannot hold become blanks.
 fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            c if c.is_control() => out.push(' '),
-            '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
-            c => out.push(c),
-        }
-    }
-    out
+    let is_odd = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
+    quick_xml::escape::escape(text.replace(is_odd, " ")).into_owned()
 }

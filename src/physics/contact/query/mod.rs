@@ -23,6 +23,7 @@ pub mod hull;
 mod points;
 mod polytope;
 pub mod separation;
+pub mod shell;
 
 use super::{Solid, TOUCH_NUMBERS};
 pub(super) use body::Body;

@@ -69,7 +69,7 @@ impl Separation {
     }
 }
 
-fn pose(X: &Frame<f64>) -> Option<Pose> {
+pub(super) fn pose(X: &Frame<f64>) -> Option<Pose> {
     let vector = |v: Vec3<f64>| Vector::new(v.0[0], v.0[1], v.0[2]);
     let column = |k: usize| vector(X.rotation.column(k));
     let axes = Matrix::from_cols(column(0), column(1), column(2));

@@ -30,7 +30,7 @@ class _Delivery(WorkerPlugin):  # type: ignore[misc]
     """A job for every worker, also for those that take the place of lost ones."""
 
     def __init__(self, key: str, pickled: bytes) -> None:
-        self.name = f"cognate-{key}"
+        self.name = f"pycognate-{key}"
         self._key, self._job = key, pickled
 
     def setup(self, worker: Any) -> None:

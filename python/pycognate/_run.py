@@ -8,13 +8,13 @@ import os
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from ._columns import Columns
 from ._errors import ColumnError, Diagnostic, ResultsError
 
 if TYPE_CHECKING:
@@ -65,11 +65,12 @@ class Animation:
         return f"<Animation {self.title!r}: {len(self.html) // 1024} kB>"
 
 
-class Run(Mapping[str, NDArray[np.float64]]):
-    """Results of a run: a mapping from names of columns to arrays.
+class Run(Columns):
+    """Results of a run: columns by their names, a row for each output; `len` counts rows.
 
     Arrays are views of the memory of the run, without a copy; they cannot be written, and keep
-    that memory alive. Names are found without regard to blanks and case. Runs can be pickled.
+    that memory alive. Names are found without regard to blanks and case; ``"crank_bearing.FX"`` and
+    ``"JOINT/1.FX"`` are components of elements. Runs can be pickled.
 
     Examples
     --------
@@ -90,10 +91,7 @@ class Run(Mapping[str, NDArray[np.float64]]):
     # --- columns -----------------------------------------------------------------------------
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
-        index = self._core.find(name)
-        if index is None:
-            raise self._missing(name)
-        return self._array(index)
+        return self._array(self._core.resolve(name))
 
     def __contains__(self, name: object) -> bool:
         return isinstance(name, str) and self._core.find(name) is not None
@@ -102,20 +100,12 @@ class Run(Mapping[str, NDArray[np.float64]]):
         return (self._columns[index][0] for index in self._table)
 
     def __len__(self) -> int:
-        return len(self._table)
+        return len(self.time)
 
     def _array(self, index: int) -> NDArray[np.float64]:
         if index not in self._arrays:
             self._arrays[index] = self._core.column(index)
         return self._arrays[index]
-
-    def _missing(self, name: str) -> ColumnError:
-        names = [column[0] for column in self._columns]
-        near = get_close_matches(name, names, 3, 0.6)
-        advice = [f"did you mean {', '.join(near)}?"] if near else []
-        advice.append("columns are asked for before a run: model.run(…, columns=[…])")
-        advice.append("after it run.measure(…) finds motions of markers, of a run with full=True")
-        return self._no_column(f"there is no column `{name}`", advice)
 
     @staticmethod
     def _no_column(message: str, advice: list[str]) -> ColumnError:
@@ -174,9 +164,7 @@ class Run(Mapping[str, NDArray[np.float64]]):
         ndarray
             How far its values may be off.
         """
-        of = self._core.find(name)
-        if of is None:
-            raise self._missing(name)
+        of = self._core.resolve(name)
         for index, (_, _, bar_of) in enumerate(self._columns):
             if bar_of == of:
                 return self._array(index)
@@ -340,13 +328,8 @@ class Run(Mapping[str, NDArray[np.float64]]):
             return [index for index in self._table if index != 0]
         if isinstance(columns, str):
             raise TypeError("columns is a list of names, not one text")
-        chosen = []
-        for name in columns:
-            index = self._core.find(name)
-            if index is None:
-                raise self._missing(name)
-            chosen.append(index)
-        return chosen
+        chosen = [index for name in columns for index in self._core.resolve_all(name)]
+        return list(dict.fromkeys(chosen))
 
     def _units(self, chosen: Sequence[int]) -> dict[str, str]:
         return {self._columns[index][0]: self._columns[index][1] for index in chosen}
@@ -359,7 +342,7 @@ class Run(Mapping[str, NDArray[np.float64]]):
         Parameters
         ----------
         columns : sequence of str, or str, optional
-            The columns; those that tables show where left out.
+            The columns, or patterns such as ``"slider.*"``; those that tables show where left out.
         ax : matplotlib.axes.Axes, optional
             Where to plot; a figure with one panel for each unit where left out.
 
@@ -437,7 +420,7 @@ class Run(Mapping[str, NDArray[np.float64]]):
         record = self.record
         facts = [
             ("status", self.status + (f": {self.stop_reason}" if self.stop_reason else "")),
-            ("rows", f"{len(self.time)}"),
+            ("rows", f"{len(self)}"),
             ("columns", f"{len(self._table)} shown of {len(self._columns)}"),
             ("method", str(record.get("method", ""))),
             ("steps", str(record.get("steps", ""))),
@@ -451,13 +434,7 @@ class Run(Mapping[str, NDArray[np.float64]]):
         return f"<table><caption>{html.escape(self.title or self.name)}</caption>{rows}</table>"
 
     def __repr__(self) -> str:
-        return f"<Run {self.name!r}: {self.status}, {len(self.time)} rows, {len(self)} columns>"
-
-    def __eq__(self, other: object) -> bool:
-        return self is other
-
-    def __hash__(self) -> int:
-        return id(self)
+        return f"<Run {self.name!r}: {self.status}, {len(self)} rows, {len(self._table)} columns>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         model = None if self._model is None else (self._model.text, self._model.file)
@@ -486,6 +463,8 @@ def read_results(path: str | os.PathLike[str]) -> Run:
     ------
     ResultsError
         A file that cannot be read, with the line.
+    FileNotFoundError
+        The file is not there; it is a ResultsError, too.
     """
     return Run(_core.Results.read(path))
 

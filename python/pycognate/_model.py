@@ -39,7 +39,9 @@ class Options(TypedDict, total=False):
     Attributes
     ----------
     columns : sequence of str
-        Further columns: any expressions of the function language.
+        Further columns: any expressions of the function language, in which elements may have their
+        names (``"DX(slider.cm, ground)"``), and components of sets of results
+        (``"crank_bearing.FX"``).
     error : float
         Permitted local error of the integration.
     method : str
@@ -47,7 +49,9 @@ class Options(TypedDict, total=False):
     accuracy : bool
         Give every column bars of error, from a further run at a smaller request.
     full : bool
-        Sets of results of all elements; where left out, if the dataset asks for RESULTS.
+        Sets of results of all elements. Where left out: if the dataset asks for RESULTS, and if
+        nothing else is asked for, no column and no REQUEST (of a model of more than 400 elements
+        then the places of the bodies alone). False: what is asked for alone.
     frames : bool
         Positions and angles of all parts, whatever else is recorded.
     max_steps : int
@@ -146,7 +150,7 @@ class Model:
 
     Examples
     --------
-    >>> import cognate as cg
+    >>> import pycognate as cg
     >>> model = cg.Model.read("examples/slider_crank.adm")  # doctest: +SKIP
     >>> run = model.run(end=1.0, steps=200)  # doctest: +SKIP
     >>> run["slider.X"]  # doctest: +SKIP
@@ -178,6 +182,8 @@ class Model:
         ------
         ModelError
             Every mistake, with place and advice, in its `errors`.
+        FileNotFoundError
+            The file is not there; it is a ModelError, too.
         """
         return cls(_core.Model.read(path, setup))
 
@@ -437,7 +443,7 @@ class Model:
     def sweep(
         self, parameters: Mapping[str, Any], measures: str | Sequence[str], *args: Any, **options: Any
     ) -> SweepTable:
-        """Run the model again and again with other numbers; see `cognate.sweep`.
+        """Run the model again and again with other numbers; see `pycognate.sweep`.
 
         Parameters
         ----------
@@ -446,7 +452,7 @@ class Model:
         measures : str or sequence of str
             Numbers of each run: ``"max(abs(FX(41,11)))"``.
         *args, **options
-            As for `cognate.sweep`.
+            As for `pycognate.sweep`.
 
         Returns
         -------
@@ -707,7 +713,9 @@ class Session:
         return self._attended(progress, until, lambda report: self._core.simulate(simulation, report))
 
     def _obey(self, script: _core.Commands, progress: bool | Progress | None) -> str:
-        return self._attended(progress, None, lambda report: self._core.obey(script, report))
+        return self._attended(
+            progress, script.end, lambda report: self._core.obey(script, report)
+        )
 
     def _attended(
         self,
@@ -755,11 +763,13 @@ def run(path: str | os.PathLike[str], **options: Unpack[RunOptions]) -> Run:
     Raises
     ------
     ModelError
-        Mistakes in either file; a dataset that is not there.
+        Mistakes in either file.
+    FileNotFoundError
+        One of them is not there; it is a ModelError, too.
 
     Examples
     --------
-    >>> import cognate as cg
+    >>> import pycognate as cg
     >>> cg.run("examples/slider_crank.acf")["slider.X"]  # doctest: +SKIP
     """
     dataset = _core.Commands.read(path).model_file

@@ -2,7 +2,7 @@
 
 Examples
 --------
->>> import cognate as cg
+>>> import pycognate as cg
 >>> cg.expr("STEP5(TIME, 0, 0, 1, 10)*SIN(2*PI*TIME)")(0.25)
 1.03515625
 """
@@ -16,7 +16,9 @@ from ._errors import (
     ExprError,
     IncompleteRun,
     ModelError,
+    ModelFileNotFound,
     ResultsError,
+    ResultsFileNotFound,
 )
 from ._expr import expr
 from ._linear import LinearSystem, Mode
@@ -41,8 +43,10 @@ __all__ = [
     "Model",
     "ModelBuilder",
     "ModelError",
+    "ModelFileNotFound",
     "Options",
     "ResultsError",
+    "ResultsFileNotFound",
     "Run",
     "RunOptions",
     "Session",

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from ._columns import Columns
 from ._model import Kind, Model, Options, choices_of, simulation_of
 from ._progress import Progress, reporter
 
@@ -28,8 +29,8 @@ Row = tuple[int, list[float], list[float], str, int, str]
 _MOST_CHOICES = 8
 
 
-class SweepTable(Mapping[str, NDArray[np.float64]]):
-    """Runs of a sweep: a mapping from parameters and measures to columns, a row a run.
+class SweepTable(Columns):
+    """Runs of a sweep: a column for each parameter and measure, a row a run; `len` counts runs.
 
     Attributes
     ----------
@@ -78,7 +79,7 @@ class SweepTable(Mapping[str, NDArray[np.float64]]):
         return iter(self._columns)
 
     def __len__(self) -> int:
-        return len(self._columns)
+        return len(self.run)
 
     @property
     def ok(self) -> NDArray[np.bool_]:
@@ -160,13 +161,7 @@ class SweepTable(Mapping[str, NDArray[np.float64]]):
 
     def __repr__(self) -> str:
         done = int(self.ok.sum())
-        return f"<SweepTable: {len(self.run)} runs, {done} completed, {len(self)} columns>"
-
-    def __eq__(self, other: object) -> bool:
-        return self is other
-
-    def __hash__(self) -> int:
-        return id(self)
+        return f"<SweepTable: {len(self)} runs, {done} completed, {len(self._columns)} columns>"
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,7 @@ def expr(
 
     Examples
     --------
-    >>> import cognate as cg
+    >>> import pycognate as cg
     >>> f = cg.expr("STEP5(TIME, 0, 0, 1, 10)")
     >>> f(0.5)
     5.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import sys
 import time
 from collections.abc import Callable
@@ -12,12 +13,22 @@ __all__ = ["Progress", "reporter"]
 #: Called with the time that the simulation has reached.
 Progress = Callable[[float], object]
 
-#: Runs shorter than this show no bar [s].
+#: Work that is done sooner shows no bar [s].
 _QUIET_FOR = 0.5
+#: Share of the work from which on the rest of its time is estimated.
+_ENOUGH_DONE = 0.01
+
+
+def _duration(seconds: float) -> str:
+    """Return a time in the unit in which people say it."""
+    for size, unit in ((3600.0, "h"), (60.0, "min")):
+        if seconds >= 2.0 * size:
+            return f"{seconds / size:.0f} {unit}"
+    return f"{seconds:.0f} s"
 
 
 class _Bar:
-    """A bar in the output of a notebook cell, which goes when the simulation has ended."""
+    """A bar in the output of a notebook cell, which goes when the work has ended."""
 
     def __init__(self, start: float, end: float | None, what: str) -> None:
         self._start, self._end, self._what = start, end, what
@@ -25,25 +36,34 @@ class _Bar:
         self._handle: Any = None
 
     def __call__(self, now: float) -> None:
-        if time.monotonic() - self._begun < _QUIET_FOR:
+        elapsed = time.monotonic() - self._begun
+        if elapsed < _QUIET_FOR:
             return
-        from IPython.display import HTML, display
+        from IPython.display import display
 
-        share = ""
-        if self._end is not None and self._end > self._start:
-            share = f' value="{(now - self._start) / (self._end - self._start):.4f}"'
-        bar = HTML(f"<progress{share}></progress> {self._what} {now:.6g}")
+        bar = self._shown(now, elapsed)
         if self._handle is None:
-            self._handle = display(bar, display_id=True)
+            self._handle = display(bar, raw=True, display_id=True)
         else:
-            self._handle.update(bar)
+            self._handle.update(bar, raw=True)
+
+    def _shown(self, now: float, elapsed: float) -> dict[str, str]:
+        """Return the bar as notebooks take it, and as text for those that show no HTML."""
+        share, bar = "", "<progress></progress>"
+        words = f"{self._what} {now:.4g}"
+        if self._end is not None and self._end > self._start:
+            done = min(max((now - self._start) / (self._end - self._start), 0.0), 1.0)
+            bar = f'<progress value="{done:.4f}"></progress>'
+            share = f"{done:4.0%} "
+            words += f" of {self._end:.4g}"
+            if done >= _ENOUGH_DONE:
+                words += f", {_duration(elapsed * (1.0 - done) / done)} to go"
+        return {"text/html": f"{bar} {share}{html.escape(words)}", "text/plain": share + words}
 
     def close(self) -> None:
         """Take the bar away."""
         if self._handle is not None:
-            from IPython.display import HTML
-
-            self._handle.update(HTML(""))
+            self._handle.update({"text/html": "", "text/plain": ""}, raw=True)
 
 
 def _in_notebook() -> bool:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 __all__ = [
     "ColumnError",
@@ -12,7 +14,9 @@ __all__ = [
     "ExprError",
     "IncompleteRun",
     "ModelError",
+    "ModelFileNotFound",
     "ResultsError",
+    "ResultsFileNotFound",
 ]
 
 
@@ -126,6 +130,9 @@ class Error(Exception):
         """Advice on the first mistake."""
         return self.errors[0].advice
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.errors, self.source)
+
     def __str__(self) -> str:
         text = "\n".join(str(error) for error in self.errors)
         if self.source is None or self.column is None or "\n" in self.source:
@@ -143,6 +150,22 @@ class ModelError(Error, ValueError):
 
 class ResultsError(Error, ValueError):
     """A file of results that cannot be read or written."""
+
+
+class _FileNotFound(Error, FileNotFoundError):
+    """A file that is not there, with what the system says of it."""
+
+    def __init__(self, errors: Sequence[Diagnostic], source: str | None = None) -> None:
+        super().__init__(errors, source)
+        self.errno, self.strerror, self.filename = errno.ENOENT, self.message, self.file
+
+
+class ModelFileNotFound(_FileNotFound, ModelError):
+    """A dataset or command file that is not there."""
+
+
+class ResultsFileNotFound(_FileNotFound, ResultsError):
+    """A file of results that is not there."""
 
 
 class ColumnError(Error, KeyError):

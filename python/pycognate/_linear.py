@@ -55,7 +55,7 @@ class LinearSystem(NamedTuple):
 
     Examples
     --------
-    >>> import cognate as cg
+    >>> import pycognate as cg
     >>> A, B, C, D, names = cg.Model.read("plant.adm").linear()  # doctest: +SKIP
     >>> plant = control.ss(A, B, C, D, **names)  # doctest: +SKIP
     """

@@ -7,6 +7,7 @@ from typing import Any
 
 from . import _core
 from ._model import Law, Model
+from ._words import Words
 
 __all__ = ["Body", "Element", "Marker", "ModelBuilder"]
 
@@ -57,7 +58,8 @@ class Element:
         keyword : str, optional
             An argument, for keywords that are no identifiers.
         value : number, str, Element or sequence of them, optional
-            Its value. True: the argument stands alone, as ROTATIONAL does.
+            Its value. True: the argument stands alone, as ROTATIONAL does. A sequence of sequences:
+            the rows of an argument that is given several times, as Y of SPLINE.
         **arguments
             The same, several at once: ``spring.set(K=100, C=1, LENGTH=0.5)``.
 
@@ -75,8 +77,12 @@ class Element:
         for name, setting in given.items():
             if setting is True:
                 self._model._core.flag(self._core, name)
-            else:
-                self._model._core.set(self._core, name, _plain(setting, self._model))
+                continue
+            plain = _plain(setting, self._model)
+            is_table = isinstance(plain, list) and len(plain) > 0 and isinstance(plain[0], list)
+            rows = plain if is_table else [plain]
+            for row in rows:
+                self._model._core.set(self._core, name, row)
         return self
 
     def function(self, expression: str | float) -> Any:
@@ -257,7 +263,7 @@ class Body(Element):
         return Marker(self._model, self._model._core.at(self._core, _vector(place)))
 
 
-class ModelBuilder:
+class ModelBuilder(Words):
     """A model that a program makes, a statement after the other in any order.
 
     Elements get numbers as they are made and keep their names in written datasets. Lengths, masses,
@@ -272,7 +278,7 @@ class ModelBuilder:
 
     Examples
     --------
-    >>> import cognate as cg
+    >>> import pycognate as cg
     >>> model = cg.ModelBuilder("pendulum").units("MKS").gravity(0, -9.81, 0)
     >>> rod = model.part("rod").mass(2).inertia(0, 0.2, 0.2).center([0.5, 0, 0])
     >>> hinge = model.revolute("hinge", rod.at([0, 0, 0]), model.ground)
@@ -370,6 +376,19 @@ class ModelBuilder:
         """
         return Body(self, self._core.element("POINT_MASS", name))
 
+    def _add(self, word: str, name: str, *ends: Body | Marker, **given: Any) -> Any:
+        """Add the element of a word, with those arguments that are given."""
+        if ends:
+            i, j = ends
+            core = self._core.add_between(word, name, i._core, j._core)
+        else:
+            core = self._core.add(word, name)
+        keyword = core.element.split("/")[0]
+        classes: dict[str, type[Element]] = {"PART": Body, "POINT_MASS": Body, "MARKER": Marker}
+        element = classes.get(keyword, Element)(self, core)
+        element.set(**{key: x for key, x in given.items() if x is not None and x is not False})
+        return element
+
     def element(self, keyword: str, name: str = "", **arguments: Any) -> Element:
         """Add any statement with a number.
 
@@ -450,41 +469,9 @@ class ModelBuilder:
         """
         return self.between("JOINT", name, i, j, **{kind: True})
 
-    def revolute(self, name: str, i: Body | Marker, j: Body | Marker) -> Element:
-        """Add a hinge: rotation about z.
-
-        Parameters
-        ----------
-        name : str
-            Its name.
-        i, j : Body or Marker
-            Its ends.
-
-        Returns
-        -------
-        Element
-            The joint.
-        """
-        return self.joint("REVOLUTE", name, i, j)
-
-    def translational(self, name: str, i: Body | Marker, j: Body | Marker) -> Element:
-        """Add a slider: translation along z.
-
-        Parameters
-        ----------
-        name : str
-            Its name.
-        i, j : Body or Marker
-            Its ends.
-
-        Returns
-        -------
-        Element
-            The joint.
-        """
-        return self.joint("TRANSLATIONAL", name, i, j)
-
-    def motion(self, name: str, joint: Element, expression: str) -> Element:
+    def motion(
+        self, name: str, joint: Element, expression: str | float, **arguments: Any
+    ) -> Element:
         """Add a motion of a joint, as an expression of time.
 
         Parameters
@@ -493,15 +480,17 @@ class ModelBuilder:
             Its name.
         joint : Element
             The joint.
-        expression : str
+        expression : str or float
             An angle in radians of a joint that turns, else a length.
+        **arguments
+            Others of MOTION: ``VELOCITY=True``.
 
         Returns
         -------
         Element
             The motion.
         """
-        return self.element("MOTION", name, JOINT=joint, FUNCTION=expression)
+        return self.element("MOTION", name, JOINT=joint, FUNCTION=expression, **arguments)
 
     def force(self, name: str, i: Body | Marker, j: Body | Marker) -> Element:
         """Add a force along the line between two markers; positive pushes them apart.
