@@ -2,7 +2,7 @@
 
 import pytest
 
-import cognate as cg
+import pycognate as cg
 
 FALLING = """falling
 ACCGRAV/JGRAV=-10
