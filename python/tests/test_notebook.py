@@ -57,7 +57,9 @@ def displayed(code):
 
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(code)])
     Watching(notebook, timeout=120, startup_timeout=120, kernel_name="python3").execute()
-    texts = [output.get("text", "") for output in notebook.cells[0].outputs]
+    # warnings go to the other stream
+    streams = [output for output in notebook.cells[0].outputs if output.get("name") == "stdout"]
+    texts = [output.get("text", "") for output in streams]
     return "".join(texts).strip(), shown
 
 

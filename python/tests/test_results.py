@@ -94,7 +94,9 @@ def test_a_run_is_a_page_that_moves(slider_crank, falling, tmp_path):
     moved = slider_crank.run(end=0.1, steps=5, frames=True).animate()
     moved.save(tmp_path / "run.html")
     page = (tmp_path / "run.html").read_text(encoding="utf-8")
-    assert page == moved.html and page.startswith("<!DOCTYPE html>") and "http-equiv" not in page
+    assert page == moved.html and page.startswith("<!DOCTYPE html>")
+    # nothing is fetched, nor is another page shown in its place
+    assert "default-src 'none'" in page and "http-equiv=\"refresh\"" not in page
     shown = moved._repr_html_()
     assert shown.startswith("<iframe srcdoc=") and shown.count('"') == 4
 

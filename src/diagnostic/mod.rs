@@ -15,6 +15,7 @@ pub use count::counted;
 pub use error::Error;
 pub use subject::Subject;
 
+use std::cmp::Reverse;
 use std::fmt;
 
 /// A range of bytes in a source text.
@@ -166,7 +167,8 @@ impl fmt::Display for Diagnostic {
 
 impl std::error::Error for Diagnostic {}
 
-/// Returns the names of `known` that are close to `name`, nearest first, at most three.
+/// Returns the names of `known` that are close to `name`, nearest first, of those that are as near
+/// the one that begins alike for longer, at most three.
 ///
 /// Close means an edit distance (with transpositions) of at most a third of the length, a common
 /// beginning, or a fifth of the length from an abbreviation (`ROTATON` of `ROTATIONAL`).
@@ -174,7 +176,7 @@ pub fn near_names<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> V
     let name = beginning(name, MOST_COMPARED).to_ascii_uppercase();
     let n = name.chars().count();
     let (limit, limit_abbreviated) = ((name.len() / 3).max(1), name.len() / 5);
-    let mut found: Vec<(usize, &str)> = known
+    let mut found: Vec<(usize, Reverse<usize>, &str)> = known
         .into_iter()
         .filter_map(|k| {
             let upper = beginning(k, MOST_COMPARED).to_ascii_uppercase();
@@ -186,13 +188,16 @@ pub fn near_names<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> V
             let mut abbreviations = n - limit_abbreviated.min(n)..=n + limit_abbreviated;
             let abbreviates = |m| distance_to(m) <= limit_abbreviated;
             let is_near = d <= limit || begins;
-            (is_near || limit_abbreviated > 0 && abbreviations.any(abbreviates)).then_some((d, k))
+            let both = name.bytes().zip(upper.bytes());
+            let alike = Reverse(both.take_while(|(a, b)| a == b).count());
+            (is_near || limit_abbreviated > 0 && abbreviations.any(abbreviates))
+                .then_some((d, alike, k))
         })
         .collect();
     found.sort();
-    found.dedup_by_key(|f| f.1);
+    found.dedup_by_key(|f| f.2);
     found.truncate(3);
-    found.into_iter().map(|f| f.1).collect()
+    found.into_iter().map(|f| f.2).collect()
 }
 
 /// Letters of a name that are compared: the work grows with the cube.
