@@ -134,7 +134,7 @@ fn from_input() -> Result<PathBuf, Failure> {
 
 /// Writes the scripts that other programs call; they call this program by these words.
 fn install(folder: &Path, program: &[OsString]) -> Outcome {
-    let program: Vec<String> = program.iter().map(|word| disk::text(word)).collect();
+    let program: Vec<String> = program.iter().map(disk::text).collect();
     let scripts = [
         (folder.join("mdi"), shell(&program)),
         (folder.join("common").join("mdi.bat"), batch(&program)),
