@@ -81,7 +81,8 @@ impl Encoding {
 }
 
 /// Letters of the bytes 0x80 to 0x9F in Windows-1252, which differs from Latin-1 in these alone. A
-/// library for them would bring the letters of East Asia and four libraries of its own.
+/// library for them would bring the letters of East Asia and five libraries of its own, and writes
+/// no UTF-16.
 const WINDOWS: [char; 32] = [
     '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}',
     '\u{90}', '‘', '’', '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',

@@ -1,10 +1,11 @@
 //! `cognate animate`: a run as a page that moves, as a film, or as an animated `.glb` file.
 
-use super::draw::{self, From};
+use super::draw::From;
 use super::moved::{Dimensions, Moved, Source, has_ending, pictured};
-use super::progress::Progress;
 use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, interrupt, piped, recorded, remark, run};
+#[cfg(feature = "gif")]
+use super::{draw, progress::Progress};
 use cognate::diagnostic::Diagnostic;
 use cognate::disk;
 use cognate::model::Model;
@@ -125,6 +126,7 @@ pub fn run(args: &Args) -> Outcome {
 /// Endings of the names of what moves.
 const ENDINGS: [&str; 3] = ["html", "gif", "glb"];
 /// Width of a film when nobody says, in px.
+#[cfg(feature = "gif")]
 const FILM_WIDTH: u32 = 480;
 
 /// Returns why nothing moves, and what helps.

@@ -14,6 +14,7 @@ use clap::Parser;
 use cognate::diagnostic::{Cause, Diagnostic};
 use cognate::disk;
 use cognate::results::Writing;
+use std::ffi::OsString;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -50,9 +51,9 @@ const MARK: &str = "cognate mdi";
 ///
 /// # Errors
 /// When the words name no solver and no file, or as `cognate run`.
-pub fn run(args: &Args) -> Outcome {
+pub fn run(args: &Args, program: &[OsString]) -> Outcome {
     if let Some(folder) = &args.install {
-        return install(folder);
+        return install(folder, program);
     }
     let commands = match called(&args.words).map_err(Failure::usage)? {
         Some(file) => file,
@@ -131,22 +132,12 @@ fn from_input() -> Result<PathBuf, Failure> {
     Ok(file)
 }
 
-/// Writes the scripts that other programs call.
-fn install(folder: &Path) -> Outcome {
-    let program = std::env::current_exe();
-    let program = program.map_err(|e| unwritable(folder, &e))?;
-    let quoted = disk::text(&program).replace('\'', r"'\''");
+/// Writes the scripts that other programs call; they call this program by these words.
+fn install(folder: &Path, program: &[OsString]) -> Outcome {
+    let program: Vec<String> = program.iter().map(disk::text).collect();
     let scripts = [
-        (
-            folder.join("mdi"),
-            format!(
-                "#!/bin/sh\n# {MARK}: made by `cognate mdi --install`\nexec '{quoted}' mdi \"$@\"\n"
-            ),
-        ),
-        (
-            folder.join("common").join("mdi.bat"),
-            batch(&disk::text(&program)),
-        ),
+        (folder.join("mdi"), shell(&program)),
+        (folder.join("common").join("mdi.bat"), batch(&program)),
     ];
     for (file, _) in &scripts {
         let is_ours = |text: String| text.contains(MARK);
@@ -186,11 +177,21 @@ fn make_executable(file: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
+/// Returns the text of `mdi`, which hands all words on to the program.
+fn shell(program: &[String]) -> String {
+    let quoted = |word: &String| format!("'{}'", word.replace('\'', r"'\''"));
+    let program: Vec<String> = program.iter().map(quoted).collect();
+    let program = program.join(" ");
+    format!("#!/bin/sh\n# {MARK}: made by `cognate mdi --install`\nexec {program} mdi \"$@\"\n")
+}
+
 /// Returns the text of `mdi.bat`, which hands all words on and ends with the code of the program.
-fn batch(program: &str) -> String {
+fn batch(program: &[String]) -> String {
     // within quotes a batch file still replaces what stands between two percent signs
-    let program = program.replace('%', "%%");
-    format!("@rem {MARK}: made by `cognate mdi --install`\r\n@\"{program}\" mdi %*\r\n")
+    let quoted = |word: &String| format!("\"{}\"", word.replace('%', "%%"));
+    let program: Vec<String> = program.iter().map(quoted).collect();
+    let program = program.join(" ");
+    format!("@rem {MARK}: made by `cognate mdi --install`\r\n@{program} mdi %*\r\n")
 }
 
 #[cfg(test)]
@@ -216,10 +217,19 @@ mod tests {
 
     #[test]
     fn a_batch_file_quotes_the_program_and_hands_all_words_on() {
-        let text = batch(r"C:\Program Files (x86)\100% ours\cognate.exe");
+        let text = batch(&[r"C:\Program Files (x86)\100% ours\cognate.exe".into()]);
         let lines: Vec<&str> = text.split("\r\n").collect();
         assert!(lines[0].starts_with("@rem ") && lines[0].contains(MARK));
         let call = r#"@"C:\Program Files (x86)\100%% ours\cognate.exe" mdi %*"#;
         assert_eq!(lines[1..], [call, ""]);
+    }
+
+    #[test]
+    fn a_script_calls_the_program_by_all_its_words() {
+        let words = ["/it's/python", "-m", "pycognate"].map(str::to_owned);
+        let text = shell(&words);
+        let call = r#"exec '/it'\''s/python' '-m' 'pycognate' mdi "$@""#;
+        assert_eq!(text.lines().nth(2), Some(call));
+        assert!(batch(&words).ends_with("@\"/it's/python\" \"-m\" \"pycognate\" mdi %*\r\n"));
     }
 }

@@ -69,6 +69,7 @@ impl Progress {
         );
     }
     /// Shows that so many of all pictures are drawn.
+    #[cfg(feature = "gif")]
     pub fn pictures(&self, done: usize, all: usize) {
         let text = || format!("{done} of {all} pictures");
         self.show(done as f64, text, text);

@@ -21,6 +21,7 @@ __all__ = [
     "Sweep",
     "Table",
     "__version__",
+    "command",
     "design_points",
     "words",
 ]
@@ -230,6 +231,7 @@ class Table:
     def push(self, row: _Row) -> None: ...
     def complete(self) -> None: ...
 
+def command(program: list[str], arguments: list[str]) -> int: ...
 def design_points(
     design: str, values: list[str | list[float]], runs: int | None, seed: int
 ) -> list[list[float]]: ...

@@ -16,11 +16,13 @@
 //! user.rs      USER(…) as Python callables
 //! results.rs   tables of results, and files
 //! builder.rs   models that a program makes
+//! command.rs   the command line
 //! sweep.rs     many runs of one model
 //! ```
 
 mod arrays;
 mod builder;
+mod command;
 mod errors;
 mod expr;
 mod model;
@@ -38,6 +40,8 @@ use pyo3::pymodule;
 mod _core {
     #[pymodule_export]
     use super::builder::{Builder, Statement, words};
+    #[pymodule_export]
+    use super::command::command;
     #[pymodule_export]
     use super::expr::Expr;
     #[pymodule_export]
