@@ -219,10 +219,11 @@ impl TimedSwitches {
     }
 }
 
-/// Returns whether bounds lie on the sides of zero that are held.
+/// Returns whether bounds lie on the sides of zero that are held; what touches zero does not cross
+/// it, and what stays there is on either side.
 fn keep_sides(bounds: &[Interval], which: &[usize], sides: &[i8]) -> bool {
     which.iter().all(|&k| match sides[k] {
-        1.. => bounds[k].lo > 0.0,
-        _ => bounds[k].hi < 0.0,
+        1.. => bounds[k].lo >= 0.0,
+        _ => bounds[k].hi <= 0.0,
     })
 }
