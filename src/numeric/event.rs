@@ -5,8 +5,8 @@
 //! side.
 //!
 //! ```text
-//! 1  sample     t0 < s₁ < … < s_m < t1; the event lies in the first interval at whose end a
-//!               function has changed sides
+//! 1  sample     t0 < s₁ < … < s_m < t1, with the times that the caller names; the event lies in
+//!               the first interval at whose end a function has changed sides
 //! 2  dips       where |g| has a minimum between samples of one sign, two more points are sampled:
 //!               the vertex of the parabola through three samples, and the notch, where the secants
 //!               beside an interval meet across zero (a convex function lies above both secants).
@@ -27,6 +27,8 @@
 
 /// Interior samples per step.
 pub const SAMPLES: usize = 4;
+/// Most samples per step that the caller names.
+pub const MOST_NAMED: usize = 16;
 /// Most further samples at dips per step, for one function.
 const MOST_DIPS: usize = 8;
 /// Most further samples at dips per step, for all functions together.
@@ -70,7 +72,7 @@ pub struct Locator {
 impl Locator {
     /// Creates a locator for `n` functions; all crossings count.
     pub fn new(n: usize) -> Self {
-        let room = SAMPLES + 2 + (MOST_DIPS + n).min(MOST_DIPS_OF_ALL);
+        let room = SAMPLES + 2 + MOST_NAMED + (MOST_DIPS + n).min(MOST_DIPS_OF_ALL);
         Locator {
             direction: vec![Direction::Either; n],
             side: vec![0; n],
@@ -126,14 +128,15 @@ impl Locator {
     ///
     /// The values at `t0` are those of [`Locator::begin`], or of the end of the step scanned
     /// before. After an event the next scan begins at it. A value that is not a number is on no
-    /// side.
+    /// side. `named`: times within the step that are sampled too, ascending, [`MOST_NAMED`] at
+    /// most.
     ///
     /// # Errors
     /// Those of `g`.
     pub fn scan<E>(
         &mut self,
-        t0: f64,
-        t1: f64,
+        (t0, t1): (f64, f64),
+        named: &[f64],
         mut g: impl FnMut(f64, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<f64>, E> {
         self.crossed.clear();
@@ -144,12 +147,13 @@ impl Locator {
         self.times.clear();
         self.times.push(t0);
         let mut found = false;
-        for i in 1..=SAMPLES + 1 {
-            let t = if i > SAMPLES {
-                t1
-            } else {
-                t0 + (t1 - t0) * i as f64 / (SAMPLES + 1) as f64
-            };
+        let regular = |i: usize| t0 + (t1 - t0) * i as f64 / (SAMPLES + 1) as f64;
+        let (mut next, mut named) = (1, named.iter().copied().peekable());
+        for i in 1.. {
+            let regular = if next > SAMPLES { t1 } else { regular(next) };
+            let before = named.next_if(|&t| t < regular);
+            let t = before.filter(|&t| t > t0).unwrap_or(regular);
+            next += usize::from(t == regular);
             g(t, &mut self.values[i])?;
             self.times.push(t);
             if self.has_crossed(i) {
@@ -157,6 +161,9 @@ impl Locator {
                 break;
             }
             self.adopt_sides(i);
+            if t == t1 {
+                break;
+            }
         }
         // 2: look for dips before that; they may insert samples before the last one
         let dip = self.find_dip(&mut g)?;
@@ -412,7 +419,7 @@ mod tests {
         for pair in steps.windows(2) {
             let mut t0 = pair[0];
             while t0 < pair[1] {
-                let event = locator.scan(t0, pair[1], |t, values| {
+                let event = locator.scan((t0, pair[1]), &[], |t, values| {
                     evaluations += 1;
                     for (value, f) in values.iter_mut().zip(functions) {
                         *value = f(t);
@@ -567,6 +574,6 @@ mod tests {
         assert!(found.is_empty());
         let mut locator = Locator::new(1);
         locator.begin(&[1.0]);
-        assert_eq!(locator.scan(0.0, 1.0, |_, _| Err("no")), Err("no"));
+        assert_eq!(locator.scan((0.0, 1.0), &[], |_, _| Err("no")), Err("no"));
     }
 }

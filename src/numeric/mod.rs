@@ -16,6 +16,7 @@
 //! magnitude it has had so far (see [`control::Weights`]).
 
 pub mod bdf;
+pub mod bernstein;
 pub mod connected;
 pub mod control;
 pub mod corrector;
@@ -32,6 +33,7 @@ pub mod radau;
 pub mod rank;
 pub mod runge_kutta;
 pub mod sparse;
+pub mod subdivision;
 
 pub use bdf::Bdf;
 pub use hht::Hht;

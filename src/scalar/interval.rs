@@ -74,7 +74,7 @@ impl Interval {
         hi: f64::NAN,
     };
     /// The interval of all values.
-    const ANY: Self = Self {
+    pub(crate) const ANY: Self = Self {
         lo: f64::NEG_INFINITY,
         hi: f64::INFINITY,
     };
@@ -348,8 +348,48 @@ impl Scalar for Interval {
         match self.known() {
             Some(x) => Self::constant(table.at(x, order)),
             None if self.is_none() => self,
-            None => Self::ANY,
+            None => self.between_knots(&**table, order),
         }
+    }
+}
+
+/// Pieces of a table that are bounded one by one, at most.
+const MOST_PIECES: usize = 64;
+/// Highest degree of the pieces of a table that are bounded.
+const DEGREE: u32 = 3;
+
+impl Interval {
+    /// Returns bounds of a derivative of a table of cubic pieces: by the control points of each.
+    fn between_knots(self, table: &dyn Table, order: u32) -> Self {
+        let knots = table.knots();
+        let first = knots.partition_point(|&k| k <= self.lo);
+        let inner = knots[first..].iter().take_while(|&&k| k < self.hi).count();
+        if knots.is_empty() || inner > MOST_PIECES {
+            return Self::ANY;
+        }
+        let ends = knots[first..first + inner].iter().copied();
+        let ends = ends.chain([self.hi]);
+        let mut from = self.lo;
+        let mut all = Self::NONE;
+        for to in ends {
+            let h = to - from;
+            let [value, slope, bend, third, more] =
+                [0, 1, 2, 3, DEGREE + 1].map(|k| table.beside(from, true, order + k));
+            if !(h.is_finite() && more == 0.0) {
+                return Self::ANY;
+            }
+            let points = [
+                value,
+                value + h * slope / 3.0,
+                value + h * (2.0 * slope / 3.0 + h * bend / 6.0),
+                value + h * (slope + h * (0.5 * bend + h * third / 6.0)),
+            ];
+            for point in points {
+                all = all.hull(Self::between(point, point));
+            }
+            from = to;
+        }
+        all
     }
 }
 

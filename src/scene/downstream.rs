@@ -156,7 +156,7 @@ fn is_calm(scene: &Scene, formula: &Formula) -> bool {
     let outputs = formula.program.record(&mut recorder);
     let may_peak = formula.program.may_peak();
     recorder.switching(&outputs).is_empty()
-        && recorder.timed_breaks(&outputs, Input::Time).is_empty()
+        && recorder.timed(&outputs, Input::Time).breaks.is_empty()
         && (!may_peak || recorder.peaks(&outputs).logarithms.is_empty())
 }
 

@@ -192,17 +192,20 @@ pub(super) fn sources<S: Scalar>(at: &Equations<'_, S>, scene: &Scene) -> Vec<S>
     sources
 }
 
-/// Values that depend on time alone, and the levels at which loads, differential equations and
-/// motions may break because of them.
+/// What of loads, differential equations and motions depends on time alone. All of it reads nothing
+/// but the time among the layout's numbers.
 #[derive(Debug)]
 pub(crate) struct Timed {
-    /// the values, which read nothing but the time among the layout's numbers
+    /// values at whose levels they may break
     pub values: Program,
     /// at which levels each of them breaks
     pub levels: Vec<Levels>,
+    /// values through which time acts on them
+    pub clocks: Program,
 }
 
-/// Where loads, differential equations and motions may break at times that are fixed beforehand.
+/// What of loads, differential equations and motions depends on time alone: where they may break at
+/// times that are fixed beforehand, and through what time acts on them.
 ///
 /// # Errors
 /// Functions ask for what the equations cannot supply.
@@ -210,9 +213,12 @@ pub(crate) fn timed(recorder: &Recorder<'_, '_>) -> Result<Timed, Vec<Unsupporte
     let scene = recorder.scene();
     let time = Input::Slot(Layout::TIME as u32);
     let inputs = scene.layout.inputs();
-    let breaks = |builder: &mut Builder, values: &[Value]| -> (Vec<Value>, Vec<Levels>) {
-        let breaks = builder.timed_breaks(values, time).into_iter();
-        breaks.map(|b| (b.value, b.levels)).unzip()
+    let timed = |builder: &mut Builder, values: &[Value]| {
+        let found = builder.timed(values, time);
+        let (values, levels): (Vec<_>, _) = (found.breaks.into_iter())
+            .map(|b| (b.value, b.levels))
+            .unzip();
+        (values, levels, found.clocks)
     };
     if scene.loops_linear && !scene.loops.is_empty() {
         let mut levels = Vec::new();
@@ -223,21 +229,31 @@ pub(crate) fn timed(recorder: &Recorder<'_, '_>) -> Result<Timed, Vec<Unsupporte
             false,
             |at, _| sources(at, &scene),
             |builder, all| {
-                let (values, of_values) = breaks(builder, &all);
+                let (values, of_values, clocks) = timed(builder, &all);
                 levels = of_values;
-                vec![values]
+                vec![values, clocks]
             },
         );
         if !complaints.is_empty() {
             return Err(complaints);
         }
+        let clocks = programs.remove(1);
         let values = programs.remove(0);
-        return Ok(Timed { values, levels });
+        return Ok(Timed {
+            values,
+            levels,
+            clocks,
+        });
     }
     recorder.end(recorder.sources(), |builder, all| {
-        let (values, levels) = breaks(builder, &all);
-        let values = builder.finish_with_inputs(&values, &inputs);
-        Timed { values, levels }
+        let (values, levels, clocks) = timed(builder, &all);
+        let [values, clocks] =
+            [values, clocks].map(|list| builder.finish_with_inputs(&list, &inputs));
+        Timed {
+            values,
+            levels,
+            clocks,
+        }
     })
 }
 

@@ -22,7 +22,7 @@ fn allocations<P>(method: &mut dyn Method<P>, problem: &mut P, y: &[f64], settle
     let (mut events, mut undone) = (0, false);
     while method.t() < 10.0 {
         let step = method.step(problem, 10.0).unwrap();
-        let found = locator.scan(step.t0, step.t1, |t, values| {
+        let found = locator.scan((step.t0, step.t1), &[], |t, values| {
             method.interpolate(problem, t, &mut out)?;
             values[0] = out[0];
             Ok::<(), cognate::numeric::Failure>(())

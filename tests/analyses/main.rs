@@ -25,6 +25,7 @@ mod accuracy;
 mod allocations;
 mod apart;
 mod building;
+mod clocks;
 mod delays;
 mod doors;
 mod downstream;

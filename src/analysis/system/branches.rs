@@ -8,6 +8,7 @@ use super::algebraic_loops::AlgebraicLoops;
 use super::sliding::Slides;
 use crate::expr::program::{Program, Work};
 use crate::model::Level;
+use crate::scalar::Interval;
 use crate::scene::equations::Unsupported;
 use crate::scene::layout::{Layout, LongRow};
 use crate::scene::programs::{self, Switching};
@@ -49,6 +50,9 @@ pub struct Branches {
     is_aside: bool,
     /// values of the switches at a look aside   (n_switches)
     values_aside: Vec<f64>,
+    /// the row, with bounds of what moves
+    bounded_row: Vec<Interval>,
+    bound_work: Work<Interval>,
 }
 
 impl Branches {
@@ -83,6 +87,8 @@ impl Branches {
             numbers_of_steps: Vec::new(),
             is_aside: false,
             values_aside: vec![0.0; n],
+            bounded_row: Vec::new(),
+            bound_work: Work::default(),
         })
     }
 
@@ -273,6 +279,49 @@ impl Branches {
         switching.switches.run(&self.numbers, work, values);
         if self.is_sliding() {
             self.sliding_values(numbers, values);
+        }
+    }
+
+    /// Returns which switching functions read the time and can be bounded, and the unknowns that
+    /// these read: nothing bounds values of the past, closures, or the unknowns of loops.
+    pub(super) fn timed(&self) -> (Vec<usize>, Vec<usize>) {
+        let Some(Switching { switches, .. }) = &self.switching else {
+            return Default::default();
+        };
+        let layout = self.row.numbers;
+        let unbound: Vec<usize> = (layout.loops())
+            .chain(layout.external())
+            .chain(self.row.more())
+            .collect();
+        let timed = switches.outputs_reading(&[Layout::TIME]);
+        let unbound = switches.outputs_reading(&unbound);
+        let timed: Vec<usize> = (0..timed.len())
+            .filter(|&k| timed[k] && !unbound[k])
+            .collect();
+        let read = |&k: &usize| !timed.is_empty() && switches.reads(layout.y_at(k));
+        let unknowns = (0..layout.n_y()).filter(read).collect();
+        (timed, unknowns)
+    }
+
+    /// Bounds the switching functions, with branches held as they are, over bounds of the time and
+    /// of the unknowns that [`timed`](Self::timed) names.   (n_switches)
+    pub(super) fn bound(
+        &mut self,
+        numbers: &[f64],
+        time: Interval,
+        unknowns: impl Iterator<Item = (usize, Interval)>,
+        bounds: &mut [Interval],
+    ) {
+        self.put(numbers);
+        self.bounded_row.clear();
+        let row = self.numbers.iter().map(|&x| Interval::between(x, x));
+        self.bounded_row.extend(row);
+        self.bounded_row[Layout::TIME] = time;
+        for (k, bound) in unknowns {
+            self.bounded_row[self.row.numbers.y_at(k)] = bound;
+        }
+        if let Some(Switching { switches, .. }) = &self.switching {
+            switches.eval(&self.bounded_row, &mut self.bound_work, bounds);
         }
     }
 

@@ -10,13 +10,14 @@
 //! downstream   ẋ = g(t, y, x) of what reads the mechanism and is not read by it
 //! numbers      of an instant, from time and state; speeds, accepted: what is asked of them
 //! external_inputs (past, closures), sensors, samples     numbers that programs read but do not compute
-//! pulses, peaks, time_events, tunnelling, singular_step     how long a step may be
+//! pulses, peaks, time_events, clocks, tunnelling, singular_step     how long a step may be
 //! ```
 
 mod accepted;
 mod algebraic_loops;
 mod aside;
 pub mod branches;
+mod clocks;
 pub mod closures;
 pub(super) mod downstream;
 pub(super) mod energy;
@@ -47,6 +48,7 @@ use crate::analysis::look;
 use crate::diagnostic::{Diagnostic, Error};
 use crate::expr::program::Program;
 use crate::numeric::Ode;
+use crate::scalar::Interval;
 use crate::scene::Scene;
 use crate::scene::broken::{Broken, broken};
 use crate::scene::configuration::{Configuration, Configured, Elimination};
@@ -283,6 +285,24 @@ impl System {
     pub fn switches(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.set(t, y);
         self.recorded.branches.values(&self.numbers, values);
+    }
+
+    /// Returns which switching functions read the time and are bounded by
+    /// [`bound_switches`](Self::bound_switches), and the unknowns that these read.
+    pub(super) fn timed_switches(&self) -> (Vec<usize>, Vec<usize>) {
+        self.recorded.branches.timed()
+    }
+
+    /// Bounds the switching functions, with branches held as they are, while the unknowns that
+    /// these read move between some bounds.   (n_switches)
+    pub(super) fn bound_switches(
+        &mut self,
+        time: Interval,
+        unknowns: impl Iterator<Item = (usize, Interval)>,
+        bounds: &mut [Interval],
+    ) {
+        let numbers = &self.numbers;
+        (self.recorded.branches).bound(numbers, time, unknowns, bounds);
     }
 
     /// Returns whether the motion would stay where switch `k` changes, while those slide that do.

@@ -6,6 +6,7 @@
 
 use super::algebraic_loops::AlgebraicLoops;
 use super::branches::Branches;
+use super::clocks::Clocks;
 use super::closures::Hook;
 use super::complaints;
 use super::downstream::DownstreamRates;
@@ -73,6 +74,8 @@ pub(in crate::analysis) struct Recorded {
     pub peaks: Peaks,
     /// breaks at times that are fixed beforehand
     pub time_events: TimeEvents,
+    /// what acts through time
+    pub clocks: Clocks,
     /// rates of the states downstream of the mechanism; `None`: there are none
     pub downstream: Option<Box<DownstreamRates>>,
 }
@@ -124,6 +127,7 @@ impl Recorded {
             rows: together.rows,
             branches: together.branches,
             time_events: together.time_events,
+            clocks: together.clocks,
             downstream: together.downstream,
             loops,
             thickness,
@@ -199,6 +203,7 @@ struct Together {
     rows: Rows,
     branches: Branches,
     time_events: TimeEvents,
+    clocks: Clocks,
     downstream: Option<Box<DownstreamRates>>,
 }
 
@@ -249,7 +254,9 @@ fn record_together<'s, 'b>(
     look()?;
     let rows = Rows::new(&recorder).map_err(complaints)?;
     look()?;
-    let time_events = TimeEvents::new(&recorder).map_err(complaints)?;
+    let timed = programs::timed(&recorder).map_err(complaints)?;
+    let time_events = TimeEvents::new(scene, timed.values, timed.levels);
+    let clocks = Clocks::new(&timed.clocks);
     look()?;
     // last, so that the programs of the mechanism are recorded as without it
     let downstream = match scene.layout.n_downstream {
@@ -261,6 +268,7 @@ fn record_together<'s, 'b>(
         branches,
         rows,
         time_events,
+        clocks,
         downstream,
     };
     Ok((together, recorder))

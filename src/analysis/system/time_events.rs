@@ -5,22 +5,17 @@
 //! and over a whole stretch of time at once: bounds of its values there ([`Interval`]) prove that
 //! it stays between two of its levels.
 //!
-//! ```text
-//! [t, t + h]   bounds between levels   →  nothing breaks there; go on behind it with 2h
-//!              else                    →  h/2, down to a part of the run that no pulse is shorter
-//!                                         than; then the ends are compared, and a break between
-//!                                         them is closed in to the last place
-//! ```
+//! Stretches are divided ([`subdivision`]) down to a part of the run that no pulse is shorter than;
+//! then the ends are compared, and a break between them is closed in to the last place.
 //!
 //! A step ends just before a break, and integration begins anew at the first number behind it: no
 //! evaluation of the one step is on the other's side, and no switch is looked for.
 
 use crate::expr::program::{Levels, Program, Work};
+use crate::numeric::subdivision::{self, Search};
 use crate::scalar::Interval;
-use crate::scene::equations::Unsupported;
+use crate::scene::Scene;
 use crate::scene::layout::{Layout, LongRow};
-use crate::scene::programs;
-use crate::scene::recorder::Recorder;
 
 /// Evaluations for one search, at most.
 const MAX_EVALUATIONS: usize = 400;
@@ -62,15 +57,10 @@ struct Point {
 }
 
 impl TimeEvents {
-    /// Records the functions of time alone of a scene.
-    ///
-    /// # Errors
-    /// Functions that the equations cannot supply.
-    pub fn new(recorder: &Recorder<'_, '_>) -> Result<Self, Vec<Unsupported>> {
-        let scene = recorder.scene();
-        let programs::Timed { values, levels } = programs::timed(recorder)?;
+    /// Takes the functions of time alone of a scene, and the levels at which each breaks.
+    pub fn new(scene: &Scene, values: Program, levels: Vec<Levels>) -> Self {
         if levels.is_empty() {
-            return Ok(Self::default());
+            return Self::default();
         }
         let row = LongRow {
             numbers: scene.layout,
@@ -78,7 +68,7 @@ impl TimeEvents {
             n_sides: 0,
         };
         let n = row.len();
-        Ok(Self {
+        Self {
             inputs: vec![Interval { lo: 0.0, hi: 0.0 }; n],
             values: vec![Interval { lo: 0.0, hi: 0.0 }; levels.len()],
             point: Point {
@@ -90,7 +80,7 @@ impl TimeEvents {
             levels,
             work: Work::default(),
             known: None,
-        })
+        }
     }
 
     /// Goes on from the same functions, recorded for other rows.
@@ -117,36 +107,32 @@ impl TimeEvents {
     }
 
     fn search(&mut self, t: f64, end: f64) -> TimeEvent {
-        let clear = |before: f64| TimeEvent {
-            before,
-            behind: None,
-        };
         let distance = DISTANCE * t.abs().max(end.abs());
         let shortest = (SHORTEST_STRETCH * (end - t)).max(4.0 * distance);
         // a break just here has been seen
-        let mut from = t + (0.01 * shortest).max(2.0 * distance);
-        let mut h = end - from;
-        for _ in 0..MAX_EVALUATIONS {
-            if from >= end {
-                return clear(end);
-            }
-            let to = (from + h).min(end);
-            if self.is_clear(from, to) {
-                from = to;
-                h *= 2.0;
-            } else if h > shortest {
-                h *= 0.5;
-            } else {
-                if let Some((before, behind)) = self.crossing(from, to, to >= end) {
-                    let behind = Some(behind);
-                    // evaluations at the end of a step may miss it by a rounding
-                    let before = before - distance;
-                    return TimeEvent { before, behind };
-                }
-                from = to;
-            }
+        let from = t + (0.01 * shortest).max(2.0 * distance);
+        let search = Search {
+            first: end - from,
+            shortest,
+            most: MAX_EVALUATIONS,
+        };
+        let found =
+            subdivision::first(self, (from, end), search, Self::is_clear, |events, a, b| {
+                events.crossing(a, b, b >= end)
+            });
+        match found.event {
+            // evaluations at the end of a step may miss it by a rounding
+            Some((before, behind)) => TimeEvent {
+                before: before - distance,
+                behind: Some(behind),
+            },
+            None => TimeEvent {
+                before: found
+                    .free_to
+                    .max((t + (end - t) / STEPS_UNSEARCHED).min(end)),
+                behind: None,
+            },
         }
-        clear(from.max(t + (end - t) / STEPS_UNSEARCHED))
     }
 
     /// Returns whether all values surely stay between the same levels from one time to another.

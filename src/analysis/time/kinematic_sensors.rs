@@ -81,6 +81,13 @@ impl Followed {
             while self.t < to {
                 let next = self.t + self.distance;
                 let next = if next < to && next > self.t { next } else { to };
+                // between turns of what time drives, a look at the ends sees each passage
+                let turn = system.recorded.clocks.turns(self.t, next, 1);
+                let next = turn
+                    .first()
+                    .copied()
+                    .filter(|&t| t > self.t)
+                    .unwrap_or(next);
                 self.watch(system, path, next, out)?;
                 if self.every.is_some() {
                     return Ok(());

@@ -32,4 +32,5 @@ pub mod output;
 pub mod ranks;
 pub mod states;
 pub mod switches;
+mod timed_switches;
 pub(super) mod valueless;

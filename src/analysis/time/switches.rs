@@ -32,6 +32,7 @@
 
 use crate::analysis::system::System;
 use crate::analysis::time::chatter::Chatter;
+use crate::analysis::time::timed_switches::{Seen, TimedSwitches};
 use crate::numeric::event::{Locator, sign};
 use crate::numeric::{Failure, Method, Step};
 use crate::scalar::Scalar;
@@ -146,6 +147,8 @@ pub struct Switches {
     worst: usize,
     rest: usize,
     chatter: Chatter,
+    /// those that read the time
+    timed: TimedSwitches,
     duration: f64,
 }
 
@@ -175,6 +178,7 @@ impl Switches {
             worst: 0,
             rest: 0,
             chatter: Chatter::default(),
+            timed: TimedSwitches::new(system, n),
             duration,
         }
     }
@@ -322,6 +326,7 @@ impl Switches {
             return false;
         }
         let delta = 1e-9 * self.duration;
+        self.timed.begin(y, ydot);
         self.slopes(system, t, y, ydot, delta);
         self.slope0.copy_from_slice(&self.slope1);
         system.switches(t, y, &mut self.g0);
@@ -376,23 +381,39 @@ impl Switches {
         let (y, ydot) = (method.y(), method.ydot());
         self.slopes(system, step.t1, y, ydot, 1e-4 * step.h);
         let landed = landed && self.has_landed(step);
-        let seen_from_ends = !system.is_surprised(step.h);
+        let sides = (0..self.sides.len()).map(|k| match landed && self.next[k] != 0 {
+            true => 0,
+            false => self.sides[k],
+        });
+        let (watched, slides) = (sides.collect::<Vec<_>>(), self.slide());
+        let timed = self.timed.look(system, method, step, &watched, slides);
+        let named = match timed {
+            Ok(Seen::Nothing) => None,
+            Ok(Seen::Look(named)) => Some(named),
+            Ok(Seen::Short(to)) => {
+                self.next.fill(0);
+                return Verdict::Redo(to);
+            }
+            // the scan says so, too
+            Err(_) => Some(Vec::new()),
+        };
+        let seen_from_ends = named.is_none() && !system.is_surprised(step.h);
         if seen_from_ends
             && (!self.is_near(step.h, landed) || self.is_clear(system, method, step, landed))
         {
             if landed {
                 return Verdict::Switched;
             }
-            self.keep();
+            self.keep(method);
             return Verdict::Keep;
         }
         // the first switch on the interpolant
-        let at = match self.scan(system, method, step) {
+        let at = match self.scan(system, method, step, named.as_deref().unwrap_or_default()) {
             Ok(Some(at)) => at,
             Ok(None) if landed => return Verdict::Switched,
             Ok(None) => {
                 self.sides.copy_from_slice(self.locator.sides());
-                self.keep();
+                self.keep(method);
                 return Verdict::Keep;
             }
             // the interpolant has no value somewhere: that of a shorter step may, or begin anew at
@@ -472,15 +493,17 @@ impl Switches {
         (0..self.sides.len()).all(|k| self.is_far(k, step.h, landed) || stays(k))
     }
 
-    /// Finds the first switch within a step on its interpolant.
+    /// Finds the first switch within a step on its interpolant; `named`: times to look at.
     fn scan(
         &mut self,
         system: &mut System,
         method: &mut dyn Method<System>,
         step: &Step,
+        named: &[f64],
     ) -> Result<Option<f64>, Failure> {
         let state = &mut self.probe;
-        self.locator.scan(step.t0, step.t1, |t, values| {
+        let ends = (step.t0, step.t1);
+        self.locator.scan(ends, named, |t, values| {
             if t == step.t1 {
                 state.copy_from_slice(method.y());
             } else {
@@ -534,7 +557,8 @@ impl Switches {
     }
 
     /// Makes the end of a step the beginning of the next.
-    fn keep(&mut self) {
+    fn keep(&mut self, method: &dyn Method<System>) {
+        self.timed.begin(method.y(), method.ydot());
         self.redone = 0;
         self.next.fill(0);
         self.locator.skip(&self.g1);

@@ -59,6 +59,22 @@ impl Program {
         core.outputs.iter().map(members).collect()
     }
 
+    /// Returns of each output whether it reads any of the inputs at some positions, be it to choose
+    /// a branch.
+    pub fn outputs_reading(&self, positions: &[usize]) -> Vec<bool> {
+        let core = self.core();
+        let mut reads = vec![false; core.size as usize];
+        for (k, &input) in core.used.iter().enumerate() {
+            reads[core.constants.len() + k] = positions.contains(&(input as usize));
+        }
+        for instruction in &core.code {
+            let mut any = false;
+            core.operands(instruction, |register| any |= reads[register as usize]);
+            reads[instruction.to as usize] = any;
+        }
+        core.outputs.iter().map(|&r| reads[r as usize]).collect()
+    }
+
     /// Returns of each position among the inputs whether an output depends on it otherwise than by
     /// straight pieces, of which each formula has a few: by a sine it may come back to a value for
     /// ever, by sums, multiples, comparisons and selections it may not.

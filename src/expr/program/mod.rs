@@ -44,6 +44,7 @@ mod parting;
 mod peaks;
 #[cfg(test)]
 mod random;
+mod rate;
 mod record;
 mod reduction;
 mod replay;

@@ -1,5 +1,5 @@
-//! Where a program may break because of what depends on time alone: at times that are known before
-//! anything else is.
+//! What of a program depends on time alone: where it may break because of that, at times that are
+//! known before anything else is; and its clocks, through which time acts on what depends on more.
 
 use super::breaks::{Break, Levels};
 use super::builder::Builder;
@@ -7,16 +7,27 @@ use super::expand::Expand;
 use super::hashing::HashMap;
 use super::input::Input;
 use super::node::{Node, Value};
+use std::collections::BTreeSet;
 
 /// Most knots of a table that was drawn by hand.
 const FEW: usize = 64;
 
+/// Values of some outputs that depend on time alone.
+#[derive(Debug, Default)]
+pub(crate) struct Timed {
+    /// values, not looked up in a table, at whose levels the outputs may break
+    pub breaks: Vec<Break>,
+    /// values through which time acts on the outputs, but for time itself: as long as each of them
+    /// rises or falls, time acts as a state does
+    pub clocks: Vec<Value>,
+}
+
 impl Builder {
-    /// Values that depend on `time` alone, and are not looked up in a table, at whose levels some
-    /// outputs may break. Calls are expanded; tables of many knots are left out.
-    pub(crate) fn timed_breaks(&mut self, outputs: &[Value], time: Input) -> Vec<Break> {
+    /// Returns what of some outputs depends on `time` alone. Calls are expanded; breaks at the
+    /// knots of tables that have many are left out.
+    pub(crate) fn timed(&mut self, outputs: &[Value], time: Input) -> Timed {
         if self.are_untimed_by_tape(outputs) {
-            return Vec::new();
+            return Timed::default();
         }
         let asked = outputs;
         let before = self.nodes.len();
@@ -34,13 +45,14 @@ impl Builder {
                 self.breaks_of(&node, &mut found);
             }
         }
-        let timed = self.dependent_on(time);
-        let none = (0..n).all(|k| !(needed[k] && timed[k]));
+        let [timed, looked_up] = [false, true].map(|tables| self.dependent_on(time, tables));
+        let none = (0..n).all(|k| !(needed[k] && looked_up[k]));
         if none && outputs == asked && self.nodes.len() == before {
             // whatever the numbers are
             self.keep_untimed(asked);
-            return Vec::new();
+            return Timed::default();
         }
+        let clocks = self.clocks(&outputs, &needed, &looked_up);
         found.retain(|b| timed[b.value.index()] && !b.levels.are_many());
         let mut breaks: Vec<Break> = Vec::new();
         let mut places: HashMap<Value, Vec<usize>> = HashMap::default();
@@ -51,18 +63,36 @@ impl Builder {
                 breaks.push(b);
             }
         }
-        breaks
+        Timed { breaks, clocks }
     }
 
-    /// Returns which values are made of one input and of constants, without tables.
-    fn dependent_on(&self, input: Input) -> Vec<bool> {
+    /// Returns the values of time alone that others read, or that are outputs.
+    fn clocks(&self, outputs: &[Value], needed: &[bool], timed: &[bool]) -> Vec<Value> {
+        let is_clock = |v: Value| {
+            let node = &self.nodes[v.index()];
+            timed[v.index()] && !matches!(node, Node::Input(_) | Node::Compare(..))
+        };
+        let mut clocks: BTreeSet<Value> =
+            outputs.iter().copied().filter(|&v| is_clock(v)).collect();
+        for k in (0..needed.len()).filter(|&k| needed[k] && !timed[k]) {
+            self.operands(&self.nodes[k], |v| {
+                if is_clock(v) {
+                    clocks.insert(v);
+                }
+            });
+        }
+        clocks.into_iter().collect()
+    }
+
+    /// Returns which values are made of one input and of constants; `tables`: also by tables.
+    fn dependent_on(&self, input: Input, tables: bool) -> Vec<bool> {
         // none: a constant
         let mut only: Vec<Option<bool>> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
             let mut all = None;
             match *node {
                 Node::Input(k) => all = Some(self.inputs[k as usize] == input),
-                Node::Lookup { .. } => all = Some(false),
+                Node::Lookup { .. } if !tables => all = Some(false),
                 _ => self.operands(node, |v| {
                     if let Some(one) = only[v.index()] {
                         all = Some(one && all != Some(false));

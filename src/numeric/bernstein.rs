@@ -1,0 +1,151 @@
+//! The unknowns within a step, bounded over any part of it.
+//!
+//! The interpolants of all methods are polynomials of the time of degree 7 at most. Through as many
+//! values within the step there is one of them, and its control points over a part [a, b] of the
+//! step bound it there:
+//!
+//! ```text
+//! y(a + (b − a) x) = Σ (7 over i) cᵢ xⁱ (1 − x)⁷⁻ⁱ,   0 ≤ x ≤ 1        min cᵢ ≤ y ≤ max cᵢ
+//! ```
+//!
+//! The bound shrinks with the square of b − a towards the range of y. Rounding is not included.
+//!
+//! Source: Farouki, The Bernstein polynomial basis: a centennial retrospective, Computer Aided
+//! Geometric Design 29 (2012).
+
+use crate::scalar::Interval;
+
+/// Degree of the polynomials: that of the interpolant of DOP853, the highest.
+const DEGREE: usize = 7;
+/// Values that determine one.
+pub const NODES: usize = DEGREE + 1;
+
+/// Some unknowns within a step.
+#[derive(Clone, Debug, Default)]
+pub struct Courses {
+    t0: f64,
+    h: f64,
+    /// control points over the whole step   (n)
+    points: Vec<[f64; NODES]>,
+}
+
+impl Courses {
+    /// Returns the parts of a step at which values are wanted: both ends are among them.
+    pub fn nodes() -> [f64; NODES] {
+        // dense at the ends, so that rounding is not magnified
+        std::array::from_fn(|i| {
+            let angle = std::f64::consts::PI * i as f64 / DEGREE as f64;
+            0.5 * (1.0 - crate::scalar::Scalar::cos(angle))
+        })
+    }
+
+    /// Takes the values of `n` unknowns at the nodes of a step from `t0` on: `values[i][k]` that of
+    /// the k-th at the i-th.
+    pub fn lead_through(&mut self, (t0, h): (f64, f64), values: &[Vec<f64>; NODES], n: usize) {
+        (self.t0, self.h) = (t0, h);
+        self.points.clear();
+        let nodes = Self::nodes();
+        self.points.extend((0..n).map(|k| {
+            let at: [f64; NODES] = std::array::from_fn(|i| values[i][k]);
+            control_points(&nodes, at)
+        }));
+    }
+
+    /// Returns bounds of the `k`-th unknown between two times of the step.
+    pub fn bound(&self, k: usize, from: f64, to: f64) -> Interval {
+        let [a, b] = [from, to].map(|t| ((t - self.t0) / self.h).clamp(0.0, 1.0));
+        let mut points = self.points[k];
+        // up to b, then of that from a on
+        part(&mut points, b, true);
+        if a > 0.0 {
+            part(&mut points, a / b, false);
+        }
+        let least = points.iter().fold(f64::INFINITY, |m, &c| m.min(c));
+        let most = points.iter().fold(f64::NEG_INFINITY, |m, &c| m.max(c));
+        match points.iter().all(|c| c.is_finite()) {
+            true => Interval::between(least, most),
+            false => Interval::ANY,
+        }
+    }
+}
+
+/// Keeps the control points of a polynomial over the part of its interval up to `x`, or from there
+/// on (de Casteljau).
+fn part(points: &mut [f64; NODES], x: f64, before: bool) {
+    let n = points.len();
+    for level in 1..n {
+        if before {
+            for i in (level..n).rev() {
+                points[i] = points[i - 1] + x * (points[i] - points[i - 1]);
+            }
+        } else {
+            for i in 0..n - level {
+                points[i] += x * (points[i + 1] - points[i]);
+            }
+        }
+    }
+}
+
+/// Returns the control points, over the whole interval, of the polynomial through values at nodes.
+fn control_points(nodes: &[f64; NODES], mut values: [f64; NODES]) -> [f64; NODES] {
+    // divided differences, then from the highest power down: p ← dᵢ + (x − xᵢ) p
+    for level in 1..NODES {
+        for i in (level..NODES).rev() {
+            values[i] = (values[i] - values[i - 1]) / (nodes[i] - nodes[i - level]);
+        }
+    }
+    let mut points = [0.0; NODES];
+    points[0] = values[DEGREE];
+    for degree in 0..DEGREE {
+        let i = DEGREE - 1 - degree;
+        // (x − xᵢ) has the control points −xᵢ and 1 − xᵢ; a product of forms of degrees n and 1
+        let before = points;
+        let n = (degree + 1) as f64;
+        for (j, point) in points.iter_mut().enumerate().take(degree + 2) {
+            let share = j as f64 / n;
+            let low = if j <= degree {
+                (1.0 - share) * before[j]
+            } else {
+                0.0
+            };
+            let high = if j > 0 { share * before[j - 1] } else { 0.0 };
+            *point = values[i] - nodes[i] * low + (1.0 - nodes[i]) * high;
+        }
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polynomial_of_degree_seven_stays_in_its_bounds_which_shrink_to_its_range() {
+        let p = |x: f64| 3.0 - x + 2.0 * x * x - 40.0 * (x - 0.3).powi(3) * (x - 0.9).powi(4);
+        let (t0, h) = (5.0, 0.25);
+        let values = Courses::nodes().map(|x| vec![0.0, p(x)]);
+        let mut courses = Courses::default();
+        courses.lead_through((t0, h), &values, 2);
+        for (from, to) in [
+            (0.0, 1.0),
+            (0.1, 0.2),
+            (0.55, 0.551),
+            (0.0, 0.5),
+            (0.9, 1.0),
+        ] {
+            let bound = courses.bound(1, t0 + h * from, t0 + h * to);
+            let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+            for j in 0..=200 {
+                let y = p(from + (to - from) * f64::from(j) / 200.0);
+                range = [range[0].min(y), range[1].max(y)];
+            }
+            assert!(bound.lo <= range[0] + 1e-12 && range[1] - 1e-12 <= bound.hi);
+            let more = (range[0] - bound.lo).max(bound.hi - range[1]);
+            assert!(
+                more < 30.0 * (to - from) * (to - from),
+                "{from} {to} {more}"
+            );
+            assert_eq!(courses.bound(0, t0, t0 + h), Interval::between(0.0, 0.0));
+        }
+    }
+}

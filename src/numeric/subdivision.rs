@@ -1,0 +1,119 @@
+//! Where something first happens along a stretch of time, shown by bounds instead of looked for at
+//! points.
+//!
+//! ```text
+//! [t, t + h]   shown to be free                 →  go on behind it with 2h
+//!              else, longer than the shortest   →  h/2
+//!              else                             →  look closely: at its ends
+//! ```
+//!
+//! What is shown to be free is so however short an event would be. What is asked for decides how:
+//! a value that stays between two levels, a rate that keeps its sign ([`Interval`] over a program).
+//!
+//! [`Interval`]: crate::scalar::Interval
+
+/// How a stretch is searched.
+#[derive(Clone, Copy, Debug)]
+pub struct Search {
+    /// longest stretch to begin with, in s
+    pub first: f64,
+    /// shortest stretch that is divided no further, in s
+    pub shortest: f64,
+    /// stretches that are looked at, at most
+    pub most: usize,
+}
+
+/// What a search has found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found<T> {
+    /// nothing happens before this time, in s
+    pub free_to: f64,
+    /// what happens in the stretch that begins there; `None`: the end was reached, or as many
+    /// stretches were looked at as permitted
+    pub event: Option<T>,
+}
+
+/// Searches from `from` to `end`: `is_free(a, b)` shows that nothing happens between two times,
+/// `event(a, b)` says what does in a stretch that is as short as permitted.
+pub fn first<C, T>(
+    course: &mut C,
+    (from, end): (f64, f64),
+    search: Search,
+    is_free: impl Fn(&mut C, f64, f64) -> bool,
+    event: impl Fn(&mut C, f64, f64) -> Option<T>,
+) -> Found<T> {
+    let (mut from, mut h) = (from, search.first);
+    for _ in 0..search.most {
+        if from >= end {
+            break;
+        }
+        let to = (from + h).min(end);
+        if is_free(course, from, to) {
+            from = to;
+            h *= 2.0;
+        } else if h > search.shortest {
+            h *= 0.5;
+        } else if let Some(found) = event(course, from, to) {
+            return Found {
+                free_to: from,
+                event: Some(found),
+            };
+        } else {
+            from = to;
+        }
+    }
+    Found {
+        free_to: from.min(end),
+        event: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::{Interval, Scalar};
+
+    fn wave<S: Scalar>(t: S) -> S {
+        (t.scale(50.0)).sin() + S::constant(1.0 - 1e-6)
+    }
+
+    #[test]
+    fn a_wave_that_dips_below_zero_by_a_millionth_is_found_and_one_that_does_not_is_shown() {
+        let search = Search {
+            first: 1.0,
+            shortest: 1e-9,
+            most: 4000,
+        };
+        let find = |above: f64, end: f64| {
+            let free = |_: &mut (), a: f64, b: f64| {
+                (wave(Interval::between(a, b)) + Interval::constant(above)).lo > 0.0
+            };
+            let event = |_: &mut (), a: f64, b: f64| (wave(b) + above < 0.0).then_some((a, b));
+            first(&mut (), (0.0, end), search, free, event)
+        };
+        let dips = find(0.0, 1.0);
+        let (a, b) = dips.event.expect("it dips");
+        let at = (1.5 * std::f64::consts::PI - (1.0f64 - 1e-6).acos().min(1.4142e-3)) / 50.0;
+        assert!((a - at).abs() < 1e-4 && b - a <= 1e-9, "{a} {at}");
+        let stays = find(2e-6, 1.0);
+        assert_eq!((stays.event, stays.free_to), (None, 1.0));
+    }
+
+    #[test]
+    fn what_takes_too_many_stretches_says_how_far_it_came() {
+        let search = Search {
+            first: 1.0,
+            shortest: 1e-3,
+            most: 100,
+        };
+        let found = first(
+            &mut (),
+            (0.0, 1.0),
+            search,
+            |(), _, _| false,
+            |(), _, _| None::<()>,
+        );
+        assert!(found.event.is_none());
+        assert!(found.free_to > 0.05 && found.free_to < 0.15, "{found:?}");
+    }
+}
