@@ -2,7 +2,7 @@
 
 use crate::running;
 
-use cognate::results::Status;
+use cognate::results::{Event, Status};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use running::{Analysis, begin, go, last, model, options_by, try_to};
@@ -144,6 +144,33 @@ fn a_sensor_of_kinematics_acts_at_its_first_instant() {
                 );
                 assert_ne!(status, Status::Stopped);
             }
+        }
+    }
+}
+
+/// What is said beside a run of a model to a time.
+fn said(text: &str, method: &str, end: f64) -> Vec<String> {
+    let mut s = begin(model(text), "test", options_by(&[], method, 1e-6));
+    go(&mut s, Analysis::Dynamic, end, 20);
+    let warning = |event: &Event| match event {
+        Event::Warning(told) => Some(told.clone()),
+        _ => None,
+    };
+    s.run.log.iter().filter_map(warning).collect()
+}
+
+#[test]
+fn nothing_is_said_of_the_energy_of_a_motion_that_shakes_nor_of_swings_of_a_fall() {
+    let falls = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=2, J=1\nACCGRAV/KGRAV=-9.81\n";
+    let shaken = "PART/3, MASS=5, CM=3, IP=1,1,1\nMARKER/3, PART=3\nJOINT/2, TRANSLATIONAL, I=3, J=1\n\
+                  MOTION/1, JOINT=2, TRANSLATIONAL, FUNCTION=0.2*SIN(60*TIME)\n";
+    for method in METHODS {
+        for text in [falls.to_string(), format!("{shaken}{falls}")] {
+            assert_eq!(
+                said(&text, method, 2.0),
+                Vec::<String>::new(),
+                "{method}\n{text}"
+            );
         }
     }
 }
