@@ -16,8 +16,7 @@ use super::functions::Continuity;
 use super::interpolation::Bindings;
 use super::program::{Break, Builder, Folding, Input, Levels, Program, Value, Work};
 use crate::diagnostic::Error;
-use crate::scalar::Scalar;
-use crate::scalar::{Germ, ORDERS};
+use crate::scalar::{Germ, Interval, ORDERS, Scalar};
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -324,12 +323,23 @@ impl Candidates {
             program.run(&[t], &mut work, &mut out);
             (out[0], out[1])
         };
+        let span = self.to - self.from;
+        // whether bounds of the value just beside some times, which rounding is part of, reach a level
+        let touches = |from: f64, to: f64| {
+            let room = 4.0 * f64::EPSILON * from.abs().max(to.abs()).max(span);
+            let beside = [Interval::between(from - room, to + room)];
+            let mut bound = [beside[0]; 2];
+            program.eval(&beside, &mut Work::default(), &mut bound);
+            let [lo, hi] = [bound[0].lo, bound[0].hi].map(|x| b.levels.place(x));
+            lo != hi && !(lo.is_nan() && hi.is_nan())
+        };
+        let touches = &touches;
         let mut left = (self.from, function(self.from));
         for k in 1..=CELLS {
             let part = k as f64 / CELLS as f64;
             let t = self.from + (self.to - self.from) * part;
             let right = (t, function(t));
-            self.cell(&mut function, &b.levels, left, right, 0);
+            self.cell(&mut function, &b.levels, touches, left, right, 0);
             left = right;
         }
     }
@@ -339,15 +349,16 @@ impl Candidates {
         &mut self,
         function: &mut impl FnMut(f64) -> (f64, f64),
         levels: &Levels,
+        touches: &impl Fn(f64, f64) -> bool,
         left: (f64, (f64, f64)),
         right: (f64, (f64, f64)),
         depth: usize,
     ) {
         let (place_left, place_right) = (levels.place(left.1.0), levels.place(right.1.0));
         let same = place_left == place_right || place_left.is_nan() && place_right.is_nan();
-        // the same side at both ends: the function may have crossed twice if it turns
+        // the same side at both ends: the function may have crossed twice, or touch, if it turns
         let turns = left.1.1 * right.1.1 < 0.0;
-        if same && !(turns && depth < 40) {
+        if same && !turns {
             return;
         }
         if self.found.len() > 8 * MOST_BREAKPOINTS {
@@ -356,7 +367,7 @@ impl Candidates {
         }
         let middle = left.0 + (right.0 - left.0) / 2.0;
         if middle <= left.0 || right.0 <= middle || depth > 1100 {
-            if !same {
+            if !same || touches(left.0, right.0) {
                 let off = |x: f64| {
                     let distance = (x - levels.nearest(x)).abs();
                     if distance.is_nan() {
@@ -371,8 +382,13 @@ impl Candidates {
             return;
         }
         let middle = (middle, function(middle));
-        self.cell(function, levels, left, middle, depth + 1);
-        self.cell(function, levels, middle, right, depth + 1);
+        // a turn just in the middle
+        if same && middle.1.1 == 0.0 && touches(middle.0, middle.0) {
+            self.found.push(middle.0);
+            return;
+        }
+        self.cell(function, levels, touches, left, middle, depth + 1);
+        self.cell(function, levels, touches, middle, right, depth + 1);
     }
 }
 
@@ -431,6 +447,14 @@ impl Whole {
             let mut place = drawn(n, draw);
             place[0] = t;
             let Some(sides) = self.sides(&place, &direction) else {
+                if n == 1 && self.ends_at(t) {
+                    return Some(Breakpoint {
+                        at: t,
+                        order: 0,
+                        before: [f64::NAN; ORDERS],
+                        after: [f64::NAN; ORDERS],
+                    });
+                }
                 continue;
             };
             let mut order = sides.order();
@@ -449,6 +473,20 @@ impl Whole {
             }
         }
         worst
+    }
+
+    /// Returns whether there is a value beside a point, but not on all sides of it: a logarithm
+    /// there has no limit that derivatives tell.
+    fn ends_at(&self, t: f64) -> bool {
+        let beside = TOUCH_TOLERANCE * t.abs().max(1.0);
+        let mut work = Work::default();
+        let mut has_value = |t: f64| {
+            let mut out = [0.0];
+            self.program.run(&[t], &mut work, &mut out);
+            out[0].is_finite()
+        };
+        let found = [t - beside, t, t + beside].map(&mut has_value);
+        (found[0] || found[2]) && !found.iter().all(|&is| is)
     }
 
     /// Returns whether the value at a point differs from its limit.

@@ -164,6 +164,22 @@ fn crossings_are_found_where_the_argument_bends_too() {
 }
 
 #[test]
+fn values_that_touch_a_level_break_there_as_those_that_cross_it_do() {
+    for at in [1.0, 0.7, -1.0 / 3.0, 2.123456789] {
+        let t = format!("(TIME-({at:?}))");
+        assert_breaks(&format!("SQRT({t}**2)"), C0, &[(at, 1)]);
+        assert_breaks(&format!("({t}**2)**0.75"), C1, &[(at, 2)]);
+        assert_breaks(&format!("({t}**2)**1.5"), C2, &[(at, 3)]);
+        assert_breaks(&format!("1/{t}**2"), Jump, &[(at, 0)]);
+        assert_breaks(&format!("LOG{t}"), Jump, &[(at, 0)]);
+        assert_breaks(&format!("LOG10(2*{t})"), Jump, &[(at, 0)]);
+        // what only comes near does not
+        assert_breaks(&format!("SQRT({t}**2+1E-3)"), Smooth, &[]);
+        assert_breaks(&format!("{t}**2"), Smooth, &[]);
+    }
+}
+
+#[test]
 fn other_inputs_break_on_surfaces() {
     let class = |text: &str| of(text).class;
     assert_eq!(class("DX(1,2)*SIN(TIME)"), Smooth);
