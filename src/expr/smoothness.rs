@@ -177,6 +177,9 @@ const CELLS: usize = 1024;
 const DRAWS: usize = 12;
 /// Distance of the two ends of a touch, and part of their jumps that may remain when they cancel.
 const TOUCH_TOLERANCE: f64 = 1e-6;
+/// Jump of a value or a slope from one side of a point to the other, where rounding hides what is
+/// between, over their size, up to which there is none.
+const BESIDE_TOLERANCE: f64 = 1e-3;
 /// Jump, as a part of the derivative that jumps, below which it is rounding.
 const NEGLIGIBLE_JUMP: f64 = 1e-9;
 
@@ -250,14 +253,20 @@ fn without_touches(breakpoints: &mut Vec<Breakpoint>) {
         let mut group = vec![first];
         while let Some(next) = rest.next_if(|b| {
             let last = &group[group.len() - 1];
-            b.order == 0
-                && last.order == 0
+            b.order == last.order
+                && b.order <= 1
                 && b.at - last.at <= TOUCH_TOLERANCE * b.at.abs().max(1.0)
         }) {
             group.push(next);
         }
-        let (before, after) = (group[0].before[0], group[group.len() - 1].after[0]);
+        let k = group[0].order;
+        let (before, after) = (group[0].before[k], group[group.len() - 1].after[k]);
         let cancel = (before - after).abs() <= TOUCH_TOLERANCE * before.abs();
+        if group.len() >= 2 && !cancel && group[0].order > 0 {
+            // one kink, which rounding hides; the shortest digits are the likelier ones
+            group.sort_by_key(|b| b.at.to_string().len());
+            group.truncate(1);
+        }
         if group.len() < 2 || !cancel {
             kept.append(&mut group);
         }
@@ -457,6 +466,9 @@ impl Whole {
                 }
                 continue;
             };
+            if n == 1 && sides.lack_a_value() && self.has_values_beside(t) {
+                return self.beside(t);
+            }
             let mut order = sides.order();
             if n == 1 && order != Some(0) && self.is_isolated(t, &sides) {
                 order = Some(0);
@@ -473,6 +485,47 @@ impl Whole {
             }
         }
         worst
+    }
+
+    /// Returns the break between two places on either side of a point, as what holds at them says:
+    /// rounding alone takes the value at the point out of a domain (`ACOS(COS(TIME))` at 0).
+    fn beside(&self, t: f64) -> Option<Breakpoint> {
+        let room = TOUCH_TOLERANCE * t.abs().max(1.0);
+        let side = |at: f64, sign: f64| -> [f64; ORDERS] {
+            let sides = self.sides(&[at], &[1.0]);
+            let there = sides.map_or([f64::NAN; ORDERS], |s| s.after.map(|d| d.0));
+            // continued to the point by its derivatives
+            std::array::from_fn(|k| {
+                let mut term = 1.0;
+                (k..ORDERS).fold(0.0, |sum, j| {
+                    let sum = sum + term * there[j];
+                    term *= sign * room / (j - k + 1) as f64;
+                    sum
+                })
+            })
+        };
+        let (before, after) = (side(t - room, 1.0), side(t + room, -1.0));
+        let size = |x: f64| x.abs().max(1.0);
+        let order = (0..=1).find(|&k| {
+            let jump = (after[k] - before[k]).abs();
+            jump > BESIDE_TOLERANCE * size(before[k]).max(size(after[k]))
+        })?;
+        Some(Breakpoint {
+            at: t,
+            order,
+            before,
+            after,
+        })
+    }
+
+    /// Returns whether there are values on both sides of a point.
+    fn has_values_beside(&self, t: f64) -> bool {
+        let room = TOUCH_TOLERANCE * t.abs().max(1.0);
+        [t - room, t + room].into_iter().all(|t| {
+            let mut out = [0.0];
+            self.program.run(&[t], &mut Work::default(), &mut out);
+            out[0].is_finite()
+        })
     }
 
     /// Returns whether there is a value beside a point, but not on all sides of it: a logarithm
@@ -524,6 +577,11 @@ impl Whole {
 }
 
 impl Sides {
+    /// Returns whether the value has no limit on one side.
+    fn lack_a_value(&self) -> bool {
+        self.before[0].0.is_nan() || self.after[0].0.is_nan()
+    }
+
     /// Returns the lowest derivative that jumps, or `None` if none does as far as known.
     fn order(&self) -> Option<usize> {
         (0..ORDERS).find(|&k| {
