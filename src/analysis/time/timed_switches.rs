@@ -81,7 +81,12 @@ impl TimedSwitches {
         }
     }
 
-    /// Looks at a step. `sides`: of all switches, 0 for those that are not asked for; `slides`:
+    /// Returns whether a clock turns within a step, so that its ends do not say what these do.
+    pub fn are_asked_for(&self, system: &mut System, step: &Step, slides: bool) -> bool {
+        (slides || !self.which.is_empty()) && !system.recorded.clocks.are_steady(step.t0, step.t1)
+    }
+
+    /// Looks at a step within which a clock turns. `sides`: of all switches, 0 for those that are not asked for; `slides`:
     /// whether one slides, whose value is no program.
     ///
     /// # Errors
@@ -95,9 +100,6 @@ impl TimedSwitches {
         slides: bool,
     ) -> Result<Seen, Failure> {
         let (t0, t1) = (step.t0, step.t1);
-        if self.which.is_empty() && !slides || system.recorded.clocks.are_steady(t0, t1) {
-            return Ok(Seen::Nothing);
-        }
         if slides {
             let turns = system.recorded.clocks.turns(t0, t1, MOST_NAMED);
             return Ok(match turns.last() {
