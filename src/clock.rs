@@ -169,10 +169,11 @@ mod tests {
     #[cfg(feature = "solver")]
     #[test]
     fn work_uses_processor_time_and_waiting_uses_none() {
+        // begun before those that are compared with it
+        let (moment, millisecond) = (Moment::now(), Duration::from_millis(1));
         let (Some(process), Some(thread)) = (process_time(), thread_time()) else {
             return;
         };
-        let (moment, millisecond) = (Moment::now(), Duration::from_millis(1));
         let since = |now: Option<Duration>, begin: Duration| now.unwrap_or_default() - begin;
         while since(thread_time(), thread) < millisecond {
             assert!(moment.elapsed() < Duration::from_secs(60), "time is told");

@@ -16,8 +16,7 @@ use super::functions::Continuity;
 use super::interpolation::Bindings;
 use super::program::{Break, Builder, Folding, Input, Levels, Program, Value, Work};
 use crate::diagnostic::Error;
-use crate::scalar::Scalar;
-use crate::scalar::{Germ, ORDERS};
+use crate::scalar::{Germ, Interval, ORDERS, Scalar};
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -178,6 +177,9 @@ const CELLS: usize = 1024;
 const DRAWS: usize = 12;
 /// Distance of the two ends of a touch, and part of their jumps that may remain when they cancel.
 const TOUCH_TOLERANCE: f64 = 1e-6;
+/// Jump of a value or a slope from one side of a point to the other, where rounding hides what is
+/// between, over their size, up to which there is none.
+const BESIDE_TOLERANCE: f64 = 1e-3;
 /// Jump, as a part of the derivative that jumps, below which it is rounding.
 const NEGLIGIBLE_JUMP: f64 = 1e-9;
 
@@ -251,14 +253,20 @@ fn without_touches(breakpoints: &mut Vec<Breakpoint>) {
         let mut group = vec![first];
         while let Some(next) = rest.next_if(|b| {
             let last = &group[group.len() - 1];
-            b.order == 0
-                && last.order == 0
+            b.order == last.order
+                && b.order <= 1
                 && b.at - last.at <= TOUCH_TOLERANCE * b.at.abs().max(1.0)
         }) {
             group.push(next);
         }
-        let (before, after) = (group[0].before[0], group[group.len() - 1].after[0]);
+        let k = group[0].order;
+        let (before, after) = (group[0].before[k], group[group.len() - 1].after[k]);
         let cancel = (before - after).abs() <= TOUCH_TOLERANCE * before.abs();
+        if group.len() >= 2 && !cancel && group[0].order > 0 {
+            // one kink, which rounding hides; the shortest digits are the likelier ones
+            group.sort_by_key(|b| b.at.to_string().len());
+            group.truncate(1);
+        }
         if group.len() < 2 || !cancel {
             kept.append(&mut group);
         }
@@ -324,12 +332,23 @@ impl Candidates {
             program.run(&[t], &mut work, &mut out);
             (out[0], out[1])
         };
+        let span = self.to - self.from;
+        // whether bounds of the value just beside some times, which rounding is part of, reach a level
+        let touches = |from: f64, to: f64| {
+            let room = 4.0 * f64::EPSILON * from.abs().max(to.abs()).max(span);
+            let beside = [Interval::between(from - room, to + room)];
+            let mut bound = [beside[0]; 2];
+            program.eval(&beside, &mut Work::default(), &mut bound);
+            let [lo, hi] = [bound[0].lo, bound[0].hi].map(|x| b.levels.place(x));
+            lo != hi && !(lo.is_nan() && hi.is_nan())
+        };
+        let touches = &touches;
         let mut left = (self.from, function(self.from));
         for k in 1..=CELLS {
             let part = k as f64 / CELLS as f64;
             let t = self.from + (self.to - self.from) * part;
             let right = (t, function(t));
-            self.cell(&mut function, &b.levels, left, right, 0);
+            self.cell(&mut function, &b.levels, touches, left, right, 0);
             left = right;
         }
     }
@@ -339,15 +358,16 @@ impl Candidates {
         &mut self,
         function: &mut impl FnMut(f64) -> (f64, f64),
         levels: &Levels,
+        touches: &impl Fn(f64, f64) -> bool,
         left: (f64, (f64, f64)),
         right: (f64, (f64, f64)),
         depth: usize,
     ) {
         let (place_left, place_right) = (levels.place(left.1.0), levels.place(right.1.0));
         let same = place_left == place_right || place_left.is_nan() && place_right.is_nan();
-        // the same side at both ends: the function may have crossed twice if it turns
+        // the same side at both ends: the function may have crossed twice, or touch, if it turns
         let turns = left.1.1 * right.1.1 < 0.0;
-        if same && !(turns && depth < 40) {
+        if same && !turns {
             return;
         }
         if self.found.len() > 8 * MOST_BREAKPOINTS {
@@ -356,7 +376,7 @@ impl Candidates {
         }
         let middle = left.0 + (right.0 - left.0) / 2.0;
         if middle <= left.0 || right.0 <= middle || depth > 1100 {
-            if !same {
+            if !same || touches(left.0, right.0) {
                 let off = |x: f64| {
                     let distance = (x - levels.nearest(x)).abs();
                     if distance.is_nan() {
@@ -371,8 +391,13 @@ impl Candidates {
             return;
         }
         let middle = (middle, function(middle));
-        self.cell(function, levels, left, middle, depth + 1);
-        self.cell(function, levels, middle, right, depth + 1);
+        // a turn just in the middle
+        if same && middle.1.1 == 0.0 && touches(middle.0, middle.0) {
+            self.found.push(middle.0);
+            return;
+        }
+        self.cell(function, levels, touches, left, middle, depth + 1);
+        self.cell(function, levels, touches, middle, right, depth + 1);
     }
 }
 
@@ -431,8 +456,19 @@ impl Whole {
             let mut place = drawn(n, draw);
             place[0] = t;
             let Some(sides) = self.sides(&place, &direction) else {
+                if n == 1 && self.ends_at(t) {
+                    return Some(Breakpoint {
+                        at: t,
+                        order: 0,
+                        before: [f64::NAN; ORDERS],
+                        after: [f64::NAN; ORDERS],
+                    });
+                }
                 continue;
             };
+            if n == 1 && sides.lack_a_value() && self.has_values_beside(t) {
+                return self.beside(t);
+            }
             let mut order = sides.order();
             if n == 1 && order != Some(0) && self.is_isolated(t, &sides) {
                 order = Some(0);
@@ -449,6 +485,61 @@ impl Whole {
             }
         }
         worst
+    }
+
+    /// Returns the break between two places on either side of a point, as what holds at them says:
+    /// rounding alone takes the value at the point out of a domain (`ACOS(COS(TIME))` at 0).
+    fn beside(&self, t: f64) -> Option<Breakpoint> {
+        let room = TOUCH_TOLERANCE * t.abs().max(1.0);
+        let side = |at: f64, sign: f64| -> [f64; ORDERS] {
+            let sides = self.sides(&[at], &[1.0]);
+            let there = sides.map_or([f64::NAN; ORDERS], |s| s.after.map(|d| d.0));
+            // continued to the point by its derivatives
+            std::array::from_fn(|k| {
+                let mut term = 1.0;
+                (k..ORDERS).fold(0.0, |sum, j| {
+                    let sum = sum + term * there[j];
+                    term *= sign * room / (j - k + 1) as f64;
+                    sum
+                })
+            })
+        };
+        let (before, after) = (side(t - room, 1.0), side(t + room, -1.0));
+        let size = |x: f64| x.abs().max(1.0);
+        let order = (0..=1).find(|&k| {
+            let jump = (after[k] - before[k]).abs();
+            jump > BESIDE_TOLERANCE * size(before[k]).max(size(after[k]))
+        })?;
+        Some(Breakpoint {
+            at: t,
+            order,
+            before,
+            after,
+        })
+    }
+
+    /// Returns whether there are values on both sides of a point.
+    fn has_values_beside(&self, t: f64) -> bool {
+        let room = TOUCH_TOLERANCE * t.abs().max(1.0);
+        [t - room, t + room].into_iter().all(|t| {
+            let mut out = [0.0];
+            self.program.run(&[t], &mut Work::default(), &mut out);
+            out[0].is_finite()
+        })
+    }
+
+    /// Returns whether there is a value beside a point, but not on all sides of it: a logarithm
+    /// there has no limit that derivatives tell.
+    fn ends_at(&self, t: f64) -> bool {
+        let beside = TOUCH_TOLERANCE * t.abs().max(1.0);
+        let mut work = Work::default();
+        let mut has_value = |t: f64| {
+            let mut out = [0.0];
+            self.program.run(&[t], &mut work, &mut out);
+            out[0].is_finite()
+        };
+        let found = [t - beside, t, t + beside].map(&mut has_value);
+        (found[0] || found[2]) && !found.iter().all(|&is| is)
     }
 
     /// Returns whether the value at a point differs from its limit.
@@ -486,6 +577,11 @@ impl Whole {
 }
 
 impl Sides {
+    /// Returns whether the value has no limit on one side.
+    fn lack_a_value(&self) -> bool {
+        self.before[0].0.is_nan() || self.after[0].0.is_nan()
+    }
+
     /// Returns the lowest derivative that jumps, or `None` if none does as far as known.
     fn order(&self) -> Option<usize> {
         (0..ORDERS).find(|&k| {

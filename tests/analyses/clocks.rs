@@ -2,7 +2,7 @@
 
 use crate::running;
 
-use cognate::results::Status;
+use cognate::results::{Event, Status};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use running::{Analysis, begin, go, last, model, options_by, try_to};
@@ -144,6 +144,73 @@ fn a_sensor_of_kinematics_acts_at_its_first_instant() {
                 );
                 assert_ne!(status, Status::Stopped);
             }
+        }
+    }
+}
+
+/// What is said beside a run of a model to a time.
+fn said(text: &str, method: &str, end: f64) -> Vec<String> {
+    let mut s = begin(model(text), "test", options_by(&[], method, 1e-6));
+    go(&mut s, Analysis::Dynamic, end, 20);
+    let warning = |event: &Event| match event {
+        Event::Warning(told) => Some(told.clone()),
+        _ => None,
+    };
+    s.run.log.iter().filter_map(warning).collect()
+}
+
+#[test]
+fn nothing_is_said_of_the_energy_of_a_motion_that_shakes_nor_of_swings_of_a_fall() {
+    let falls = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=2, J=1\nACCGRAV/KGRAV=-9.81\n";
+    let shaken = "PART/3, MASS=5, CM=3, IP=1,1,1\nMARKER/3, PART=3\nJOINT/2, TRANSLATIONAL, I=3, J=1\n\
+                  MOTION/1, JOINT=2, TRANSLATIONAL, FUNCTION=0.2*SIN(60*TIME)\n";
+    for method in METHODS {
+        for text in [falls.to_string(), format!("{shaken}{falls}")] {
+            assert_eq!(
+                said(&text, method, 2.0),
+                Vec::<String>::new(),
+                "{method}\n{text}"
+            );
+        }
+    }
+}
+
+/// A ball of radius 0.1 that falls onto a plate which a MOTION shakes, with something that pushes them apart, as the rest of
+/// the model; where it is in the end, and how fast.
+fn bounced(push: &str, more: &str, method: &str, error: f64) -> [f64; 2] {
+    let text = format!(
+        "PART/3, MASS=5, CM=3, IP=1,1,1\nMARKER/3, PART=3\nJOINT/2, TRANSLATIONAL, I=3, J=1\n\
+         MOTION/1, JOINT=2, TRANSLATIONAL, FUNCTION=0.2*SIN(60*TIME)\n{}{push}{more}",
+        drifts(0.6, -0.2)
+    );
+    let mut s = begin(
+        model(&text),
+        "test",
+        options_by(&["DZ(2,1)", "VZ(2,1)"], method, error),
+    );
+    go(&mut s, Analysis::Dynamic, 3.0, 3);
+    [last(&s, "DZ(2,1)"), last(&s, "VZ(2,1)")]
+}
+
+#[test]
+fn a_plate_that_shakes_is_met_by_every_law_of_contact_and_every_method() {
+    let ball = "GRAPHICS/1, ELLIPSOID, CM=2, XSCALE=0.2, YSCALE=0.2, ZSCALE=0.2\n";
+    let law = "IMPACT, STIFFNESS=1E3, EXPONENT=1.5, DAMPING=1, DMAX=1E-3\n";
+    for push in [
+        "SFORCE/1, TRANSLATIONAL, I=2, J=3, FUNCTION=IMPACT(DZ(2,3),VZ(2,3),0.1,1E3,1.5,1,1E-3)\n".to_string(),
+        "SFORCE/1, TRANSLATIONAL, I=2, J=3, FUNCTION=BISTOP(DZ(2,3),VZ(2,3),0.1,5,1E3,1.5,1,1E-3)\n".to_string(),
+        "SFORCE/1, TRANSLATIONAL, I=2, J=3, FUNCTION=IF(DZ(2,3)-0.1:1E3*(0.1-DZ(2,3)),0,0)\n".to_string(),
+        format!("{ball}GRAPHICS/2, PLANE, RM=3, XMIN=-1, XMAX=1, YMIN=-1, YMAX=1\nCONTACT/1, IGEOM=1, JGEOM=2, {law}"),
+        format!("{ball}GRAPHICS/2, BOX, CORNER=4, X=2, Y=2, Z=0.02\nMARKER/4, PART=3, QP=-1,-1,-0.02\n\
+                 CONTACT/1, IGEOM=1, JGEOM=2, {law}"),
+    ] {
+        // steps that see each swing of the plate
+        let [z, v] = bounced(&push, "INTEGRATOR/GSTIFF, HMAX=0.002\n", "DOP853", 1e-8);
+        assert!(v > 0.1, "it bounces: {z} {v}");
+        for method in METHODS {
+            let [there, fast] = bounced(&push, "", method, 1e-4);
+            let off = (there - z).abs().max((fast - v).abs());
+            assert!(off < 2e-3, "{method} {push}: {off:e}");
         }
     }
 }

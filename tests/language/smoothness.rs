@@ -164,6 +164,47 @@ fn crossings_are_found_where_the_argument_bends_too() {
 }
 
 #[test]
+fn values_that_touch_a_level_break_there_as_those_that_cross_it_do() {
+    for at in [1.0, 0.7, -1.0 / 3.0, 2.123456789] {
+        let t = format!("(TIME-({at:?}))");
+        assert_breaks(&format!("SQRT({t}**2)"), C0, &[(at, 1)]);
+        assert_breaks(&format!("({t}**2)**0.75"), C1, &[(at, 2)]);
+        assert_breaks(&format!("({t}**2)**1.5"), C2, &[(at, 3)]);
+        assert_breaks(&format!("1/{t}**2"), Jump, &[(at, 0)]);
+        assert_breaks(&format!("LOG{t}"), Jump, &[(at, 0)]);
+        assert_breaks(&format!("LOG10(2*{t})"), Jump, &[(at, 0)]);
+        // what only comes near does not
+        assert_breaks(&format!("SQRT({t}**2+1E-3)"), Smooth, &[]);
+        assert_breaks(&format!("{t}**2"), Smooth, &[]);
+    }
+}
+
+#[test]
+fn rounding_that_leaves_a_domain_is_no_break_of_its_own() {
+    let turns = |first: f64, n: i32| -> Vec<(f64, usize)> {
+        (0..n)
+            .map(|k| (first + f64::from(k) * std::f64::consts::PI, 1))
+            .collect()
+    };
+    for (text, kinks) in [
+        (
+            "ACOS(COS(TIME-1))",
+            turns(1.0 - 3.0 * std::f64::consts::PI, 6),
+        ),
+        ("ASIN(SIN(TIME))", turns(-2.5 * std::f64::consts::PI, 6)),
+        ("SQRT(1-2*TIME+TIME**2)", vec![(1.0, 1)]),
+    ] {
+        let found = of(text);
+        let got: Vec<(f64, usize)> = found.breakpoints.iter().map(|b| (b.at, b.order)).collect();
+        let near = |(a, b): (&(f64, usize), &(f64, usize))| (a.0 - b.0).abs() < 1e-7 && a.1 == b.1;
+        assert!(
+            got.len() == kinks.len() && got.iter().zip(&kinks).all(near),
+            "{text}: {got:?}, not {kinks:?}"
+        );
+    }
+}
+
+#[test]
 fn other_inputs_break_on_surfaces() {
     let class = |text: &str| of(text).class;
     assert_eq!(class("DX(1,2)*SIN(TIME)"), Smooth);

@@ -36,7 +36,7 @@
 //! for every method: a push that is a part of the permitted error grows while it breaks away, and
 //! so decides when it does.
 
-use crate::analysis::system::System;
+use crate::analysis::system::{Recording, System};
 use crate::analysis::trajectory::EnergyFlow;
 use crate::numeric::{self, Form};
 use crate::scene::layout::Layout;
@@ -287,7 +287,7 @@ impl Swings {
         (system, looked): (&mut System, &[Vec<f64>]),
     ) -> Option<AddedUp> {
         flow.start?;
-        let (k, swings) = self.most()?;
+        let (k, swings) = self.most().filter(|(_, swings)| *swings >= 1.0)?;
         let row = numeric::METHODS.iter().find(|m| m.name == method)?;
         let requests = match row.form {
             _ if row.order == 2 => {
@@ -353,7 +353,8 @@ impl Force {
     ) -> Self {
         let layout = system.scene.layout;
         let n = layout.n_y();
-        let (mut jacobian, mut dfdt) = (vec![0.0; n * n], vec![0.0; n]);
+        let (mut row_of_rate, mut dfdt) = (vec![0.0; n], vec![0.0; n]);
+        let mut recorded = system.slopes_of_rate(layout.n_q + k);
         let kept = system.numbers.clone();
         let mut slopes = vec![Sample::default(); n];
         let time = |row: Option<&Vec<f64>>| row.map_or(0.0, |row| row[Layout::TIME]);
@@ -361,14 +362,15 @@ impl Force {
         let (mut is_free_of_time, mut own) = (true, [f64::INFINITY, 0.0_f64]);
         for row in looked.iter().step_by(every) {
             system.numbers.copy_from_slice(row);
-            if system.jacobian_once(&mut jacobian, &mut dfdt).is_ok() {
-                let columns: Vec<&[f64]> = jacobian.chunks(n).collect();
-                let of_v = columns
-                    .iter()
-                    .filter_map(|column| layout.state(column).v.get(k));
-                slopes.iter_mut().zip(of_v).for_each(|(s, &a)| s.add(a));
-                let own_column = layout.state(&columns).v.get(k);
-                if let Some(slope) = own_column.and_then(|column| layout.state(column).v.get(k)) {
+            if slopes_at(
+                system,
+                recorded.as_mut(),
+                layout.n_q + k,
+                (&mut row_of_rate, &mut dfdt),
+            ) {
+                let by_unknowns = slopes.iter_mut().zip(&row_of_rate);
+                by_unknowns.for_each(|(s, &a)| s.add(a));
+                if let Some(slope) = layout.state(&row_of_rate).v.get(k) {
                     own = [own[0].min(slope.abs()), own[1].max(slope.abs())];
                 }
                 let in_time = layout.state(&dfdt).v.iter().any(|slope| *slope != 0.0);
@@ -410,6 +412,30 @@ impl Force {
             is_free_of_time,
         }
     }
+}
+
+/// Evaluates the slopes of rate `i` over all unknowns at the present numbers of a system, and those
+/// of all rates over time; false where one has no value. `recorded`: the program of the former.
+fn slopes_at(
+    system: &mut System,
+    recorded: Option<&mut Recording>,
+    i: usize,
+    (slopes, dfdt): (&mut [f64], &mut [f64]),
+) -> bool {
+    let Some(recorded) = recorded else {
+        let n = slopes.len();
+        let mut jacobian = vec![0.0; n * n];
+        let found = system.jacobian_once(&mut jacobian, dfdt).is_ok();
+        let row = jacobian.iter().skip(i).step_by(n);
+        slopes
+            .iter_mut()
+            .zip(row)
+            .for_each(|(slope, &a)| *slope = a);
+        return found;
+    };
+    slopes.copy_from_slice(recorded.run(&system.numbers));
+    let finite = |all: &[f64]| all.iter().all(|x| x.is_finite());
+    system.rates_by_time(dfdt).is_ok() && finite(slopes) && finite(dfdt)
 }
 
 /// Sums over a sample of numbers.

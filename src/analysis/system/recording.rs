@@ -4,7 +4,7 @@ use crate::expr::program::{Program, Work};
 
 /// A recorded program, its scratch and its outputs.
 #[derive(Clone, Debug)]
-pub(super) struct Recording {
+pub(in crate::analysis) struct Recording {
     pub program: Program,
     work: Work,
     /// the outputs of the last run   (n_outputs)

@@ -6,7 +6,8 @@
 //!
 //! The integrals are taken step by step at the nodes of the method
 //! ([`Method::quadrature`]), so that the balance is as good as
-//! the solution: what it lacks is an error of the solution. Where motions say where a mechanism is,
+//! the solution: what it lacks is an error of the solution. Where time turns within a step, which
+//! moves what no unknown follows, they are taken from turn to turn. Where motions say where a mechanism is,
 //! they are taken along the steps of its path, and the balance is what motions do. Nothing is
 //! integrated where gravity alone acts.
 
@@ -15,8 +16,8 @@ use crate::analysis::time::continuation::Continuation;
 use crate::analysis::time::counting::Counting;
 use crate::analysis::trajectory::EnergyFlow;
 use crate::clock::Moment;
-use crate::numeric::quadrature::GAUSS_KRONROD_15;
-use crate::numeric::{Method, Step};
+use crate::numeric::quadrature::{GAUSS_KRONROD_15, Node, over_interpolant};
+use crate::numeric::{Failure, Method, Step};
 
 /// Looks at the balance during a simulation, at most about.
 const LOOKS: f64 = 64.0;
@@ -178,6 +179,55 @@ fn by_rules(power: &mut impl FnMut(f64) -> [f64; 3], [a, b]: [f64; 2]) -> Piece 
     Piece { works, error }
 }
 
+/// Parts of a step, and in how many of them a clock may turn for its nodes to see that.
+const PARTS: usize = 4;
+const FEW_TURNS: usize = 2;
+/// Turns within a step from turn to turn of which works are taken, at most: beyond, nothing is said
+/// of the balance.
+const MOST_TURNS: usize = 256;
+/// Works are not known.
+const NOT_KNOWN: Failure = Failure {
+    what: 0,
+    recoverable: false,
+};
+
+/// The turns of clocks within a step.
+enum Turns {
+    /// as few as the nodes of a method see
+    Few,
+    /// where they are, then the end
+    Many(Vec<f64>),
+    /// too many
+    Unknown,
+}
+
+fn turns_within(system: &mut System, [t0, t1]: [f64; 2]) -> Turns {
+    let clocks = &mut system.recorded.clocks;
+    // what forces do with time, error control has seen
+    if system.scene.motions.is_empty() || clocks.are_steady(t0, t1) {
+        return Turns::Few;
+    }
+    let place = |k: usize| t0 + (t1 - t0) * k as f64 / PARTS as f64;
+    let mut turn = |&k: &usize| !clocks.are_steady(place(k), place(k + 1));
+    if (0..PARTS).filter(&mut turn).count() <= FEW_TURNS {
+        return Turns::Few;
+    }
+    let turns = clocks.turns(t0, t1, MOST_TURNS + 1);
+    match turns.last() == Some(&t1) {
+        true => Turns::Many(turns),
+        false => Turns::Unknown,
+    }
+}
+
+/// Returns Kronrod's rule of fifteen nodes over [0, 1].
+fn kronrod() -> Vec<(f64, f64)> {
+    let sides = |&(half, weight, _): &(f64, f64, f64)| {
+        let both = [(0.5 - half, weight), (0.5 + half, weight)];
+        both.into_iter().skip(usize::from(half == 0.0))
+    };
+    GAUSS_KRONROD_15.iter().flat_map(sides).collect()
+}
+
 /// The first steps are timed each, as many as this, and after them one of as many, which counts for
 /// all: reading the clock twice takes a tenth of a small account.
 const TIMED: u32 = 16;
@@ -207,12 +257,24 @@ impl Accountant {
             let clock = self.clock();
             let ends = [step.t0, step.t1];
             let works = &mut flow.works;
-            let visited = method.quadrature(system, ends, &mut self.work, &mut |system, node| {
+            let mut visit = |system: &mut System, node: Node<'_>| {
                 let powers = system.powers(ends, node).unwrap_or([f64::NAN; 4]);
                 for (work, power) in works.iter_mut().zip(powers) {
                     *work += node.weight * power;
                 }
-            });
+            };
+            let visited = match turns_within(system, ends) {
+                Turns::Few => method.quadrature(system, ends, &mut self.work, &mut visit),
+                Turns::Many(times) => {
+                    let mut from = ends[0];
+                    times.into_iter().try_for_each(|to| {
+                        let piece = [std::mem::replace(&mut from, to), to];
+                        let rule = kronrod();
+                        over_interpolant(method, system, piece, &rule, &mut self.work, &mut visit)
+                    })
+                }
+                Turns::Unknown => Err(NOT_KNOWN),
+            };
             if visited.is_err() {
                 works.fill(f64::NAN);
             }

@@ -381,21 +381,13 @@ impl Switches {
         let (y, ydot) = (method.y(), method.ydot());
         self.slopes(system, step.t1, y, ydot, 1e-4 * step.h);
         let landed = landed && self.has_landed(step);
-        let sides = (0..self.sides.len()).map(|k| match landed && self.next[k] != 0 {
-            true => 0,
-            false => self.sides[k],
-        });
-        let (watched, slides) = (sides.collect::<Vec<_>>(), self.slide());
-        let timed = self.timed.look(system, method, step, &watched, slides);
-        let named = match timed {
-            Ok(Seen::Nothing) => None,
-            Ok(Seen::Look(named)) => Some(named),
-            Ok(Seen::Short(to)) => {
+        let named = match self.look_at_timed(system, method, step, landed) {
+            Seen::Nothing => None,
+            Seen::Look(named) => Some(named),
+            Seen::Short(to) => {
                 self.next.fill(0);
                 return Verdict::Redo(to);
             }
-            // the scan says so, too
-            Err(_) => Some(Vec::new()),
         };
         let seen_from_ends = named.is_none() && !system.is_surprised(step.h);
         if seen_from_ends
@@ -429,6 +421,26 @@ impl Switches {
             }
         };
         self.judge_crossing(at, step, landed)
+    }
+
+    /// Looks at the switches that read the time, but for those at which the step `landed`.
+    fn look_at_timed(
+        &mut self,
+        system: &mut System,
+        method: &mut dyn Method<System>,
+        step: &Step,
+        landed: bool,
+    ) -> Seen {
+        let slides = self.slide();
+        if !self.timed.are_asked_for(system, step, slides) {
+            return Seen::Nothing;
+        }
+        let all = self.sides.iter().zip(&self.next);
+        let asked = |(&side, &next)| if landed && next != 0 { 0 } else { side };
+        let sides: Vec<i8> = all.map(asked).collect();
+        // where the interpolant has no value, the scan says so, too
+        let seen = self.timed.look(system, method, step, &sides, slides);
+        seen.unwrap_or(Seen::Look(Vec::new()))
     }
 
     /// Counts a step during which branches are let go; after the last one they are found anew.

@@ -11,6 +11,10 @@
 //!                      until each is shown to be free, or is the first that is not
 //! ```
 //!
+//! What divides by bounds that hold zero has none itself, however short the stretch: such a switch
+//! is asked for no more. Where stretches did not decide, twice as many steps go by before the next
+//! is looked at.
+//!
 //! [`Clocks`]: crate::analysis::system::System
 
 use crate::analysis::system::System;
@@ -54,6 +58,10 @@ pub(super) struct TimedSwitches {
     samples: [Vec<f64>; NODES],
     /// bounds of all switches   (n)
     bounds: Vec<Interval>,
+    /// steps that go by before one is looked at, and as many after the last that stretches did not
+    /// decide
+    waits: usize,
+    undecided: usize,
 }
 
 impl TimedSwitches {
@@ -71,6 +79,8 @@ impl TimedSwitches {
             courses: Courses::default(),
             samples: std::array::from_fn(|_| vec![0.0; u]),
             bounds: vec![Interval { lo: 0.0, hi: 0.0 }; n],
+            waits: 0,
+            undecided: 0,
         }
     }
 
@@ -81,7 +91,18 @@ impl TimedSwitches {
         }
     }
 
-    /// Looks at a step. `sides`: of all switches, 0 for those that are not asked for; `slides`:
+    /// Returns whether a clock turns within a step, so that its ends do not say what these do.
+    pub fn are_asked_for(&mut self, system: &mut System, step: &Step, slides: bool) -> bool {
+        let nothing = self.which.is_empty() && !slides;
+        if nothing || system.recorded.clocks.are_steady(step.t0, step.t1) {
+            return false;
+        }
+        let waits = self.waits > 0 && !slides;
+        self.waits = self.waits.saturating_sub(1);
+        !waits
+    }
+
+    /// Looks at a step within which a clock turns. `sides`: of all switches, 0 for those that are not asked for; `slides`:
     /// whether one slides, whose value is no program.
     ///
     /// # Errors
@@ -95,9 +116,6 @@ impl TimedSwitches {
         slides: bool,
     ) -> Result<Seen, Failure> {
         let (t0, t1) = (step.t0, step.t1);
-        if self.which.is_empty() && !slides || system.recorded.clocks.are_steady(t0, t1) {
-            return Ok(Seen::Nothing);
-        }
         if slides {
             let turns = system.recorded.clocks.turns(t0, t1, MOST_NAMED);
             return Ok(match turns.last() {
@@ -129,12 +147,24 @@ impl TimedSwitches {
                 crosses.then_some([a, b])
             },
         );
-        Ok(match found.event {
+        let seen = match found.event {
             Some([a, b]) => Seen::Look(vec![a, b]),
             None if found.free_to >= t1 => Seen::Nothing,
             None if found.free_to > t0 + WORTH_ENDING * (t1 - t0) => Seen::Short(found.free_to),
             None => Seen::Look(Vec::new()),
-        })
+        };
+        let is_decided = seen != Seen::Look(Vec::new());
+        self.undecided = if is_decided {
+            0
+        } else {
+            2 * self.undecided + 1
+        };
+        self.waits = self.undecided;
+        if !is_decided {
+            let bounds = &self.bounds;
+            (self.which).retain(|&k| bounds[k].lo.is_finite() && bounds[k].hi.is_finite());
+        }
+        Ok(seen)
     }
 
     /// Returns whether the whole step shows that none comes to zero.

@@ -508,7 +508,11 @@ const MOST_TIMES: usize = 5;
 /// Writes what a motion prescribes that jumps, and when.
 pub fn jumps(quantity: Quantity, all: &[(f64, f64)]) -> String {
     let shown = all.iter().take(MOST_TIMES);
-    let mut times: Vec<String> = shown.map(|(at, by)| format!("{at} (by {by:.6})")).collect();
+    let time = |(at, by): &(f64, f64)| match by.is_nan() {
+        true => format!("{at} (it has no value there)"),
+        false => format!("{at} (by {by:.6})"),
+    };
+    let mut times: Vec<String> = shown.map(time).collect();
     if all.len() > MOST_TIMES {
         times.push(counted(all.len() - MOST_TIMES, "more time"));
     }
