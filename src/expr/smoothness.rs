@@ -333,7 +333,8 @@ impl Candidates {
             (out[0], out[1])
         };
         let span = self.to - self.from;
-        // whether bounds of the value just beside some times, which rounding is part of, reach a level
+        // whether bounds of the value just beside some times, which rounding is part of, reach a
+        // level
         let touches = |from: f64, to: f64| {
             let room = 4.0 * f64::EPSILON * from.abs().max(to.abs()).max(span);
             let beside = [Interval::between(from - room, to + room)];

@@ -7,12 +7,13 @@
 //!              else                             →  look closely: at its ends
 //! ```
 //!
-//! What is shown to be free is so however short an event would be. What is asked for decides how:
-//! a value that stays between two levels, a rate that keeps its sign ([`Interval`] over a program).
+//! A stretch that is shown to be free is so however short an event would be. The question decides
+//! how: a value that stays between two levels, a rate that keeps its sign ([`Interval`] over a
+//! program).
 //!
 //! [`Interval`]: crate::scalar::Interval
 
-/// How a stretch is searched.
+/// The limits of a search.
 #[derive(Clone, Copy, Debug)]
 pub struct Search {
     /// longest stretch to begin with, in s
@@ -23,7 +24,7 @@ pub struct Search {
     pub most: usize,
 }
 
-/// What a search has found.
+/// The answer to a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found<T> {
     /// nothing happens before this time, in s

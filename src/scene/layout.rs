@@ -169,6 +169,11 @@ impl Layout {
     pub fn v_at(&self, k: usize) -> usize {
         self.v().start + k
     }
+    /// Returns the index of the `k`-th velocity among the integrator's unknowns, and of its rate
+    /// among theirs.
+    pub fn v_in_y(&self, k: usize) -> usize {
+        self.n_q + k
+    }
     /// Returns the place of the `k`-th further state.
     pub fn x_at(&self, k: usize) -> usize {
         self.x().start + k

@@ -192,8 +192,8 @@ pub(super) fn sources<S: Scalar>(at: &Equations<'_, S>, scene: &Scene) -> Vec<S>
     sources
 }
 
-/// What of loads, differential equations and motions depends on time alone. All of it reads nothing
-/// but the time among the layout's numbers.
+/// The parts of loads, differential equations and motions that depend on time alone. They read
+/// nothing but the time among the layout's numbers.
 #[derive(Debug)]
 pub(crate) struct Timed {
     /// values at whose levels they may break
@@ -204,8 +204,8 @@ pub(crate) struct Timed {
     pub clocks: Program,
 }
 
-/// What of loads, differential equations and motions depends on time alone: where they may break at
-/// times that are fixed beforehand, and through what time acts on them.
+/// Finds what of loads, differential equations and motions depends on time alone: where they may
+/// break at times that are fixed beforehand, and through what time acts on them.
 ///
 /// # Errors
 /// Functions ask for what the equations cannot supply.

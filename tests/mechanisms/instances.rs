@@ -168,7 +168,7 @@ fn an_instance_is_no_rigid_body_where_what_holds_it_or_lies_in_it_is_one() {
         ),
         (
             "! cognate: MARKER a = arm\n! cognate: RIGID it = PART/3, base\n",
-            "base",
+            "PART/3 is in the rigid body it",
         ),
         ("! cognate: MARKER a = amr\n", "did you mean arm?"),
         (

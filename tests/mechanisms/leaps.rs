@@ -44,9 +44,9 @@ fn constraints_that_hold_where_parts_are_not_are_told_with_the_leap() {
         ("ACTIVATE/JPRIM, ID=2\n", "moved by 1.75 meter"),
         // the rotor is at rest and at zero
         ("ACTIVATE/MOTION, ID=4\n", "turned by 114.6 deg"),
-        ("ACTIVATE/MOTION, ID=2\n", "changes by 4 meter"),
+        ("ACTIVATE/MOTION, ID=2\n", "jumps by 4 meter"),
         // the two rotors share their momentum
-        ("ACTIVATE/COUPLER, ID=1\n", "changes by 2 rad"),
+        ("ACTIVATE/COUPLER, ID=1\n", "jumps by 2 rad"),
     ] {
         let (_, told) = after(commands);
         assert!(

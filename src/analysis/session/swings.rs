@@ -354,7 +354,7 @@ impl Force {
         let layout = system.scene.layout;
         let n = layout.n_y();
         let (mut row_of_rate, mut dfdt) = (vec![0.0; n], vec![0.0; n]);
-        let mut recorded = system.slopes_of_rate(layout.n_q + k);
+        let mut recorded = system.slopes_of_rate(layout.v_in_y(k));
         let kept = system.numbers.clone();
         let mut slopes = vec![Sample::default(); n];
         let time = |row: Option<&Vec<f64>>| row.map_or(0.0, |row| row[Layout::TIME]);
@@ -365,7 +365,7 @@ impl Force {
             if slopes_at(
                 system,
                 recorded.as_mut(),
-                layout.n_q + k,
+                layout.v_in_y(k),
                 (&mut row_of_rate, &mut dfdt),
             ) {
                 let by_unknowns = slopes.iter_mut().zip(&row_of_rate);

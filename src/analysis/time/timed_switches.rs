@@ -11,7 +11,7 @@
 //!                      until each is shown to be free, or is the first that is not
 //! ```
 //!
-//! What divides by bounds that hold zero has none itself, however short the stretch: such a switch
+//! A switch that divides by bounds which hold zero has none itself, however short the stretch: it
 //! is asked for no more. Where stretches did not decide, twice as many steps go by before the next
 //! is looked at.
 //!
@@ -32,7 +32,7 @@ const MOST_STRETCHES: usize = 1000;
 /// Part of a step that must have been shown for it to end there.
 const WORTH_ENDING: f64 = 0.01;
 
-/// What the switches that read the time do within a step.
+/// The course of the switches that read the time within a step.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Seen {
     /// no clock turns, and what is seen from the ends of the step holds for them too; or their
@@ -102,8 +102,8 @@ impl TimedSwitches {
         !waits
     }
 
-    /// Looks at a step within which a clock turns. `sides`: of all switches, 0 for those that are not asked for; `slides`:
-    /// whether one slides, whose value is no program.
+    /// Looks at a step within which a clock turns. `sides`: of all switches, 0 for those that are
+    /// not asked for; `slides`: whether one slides, whose value is no program.
     ///
     /// # Errors
     /// The interpolant has no value within the step.
@@ -143,7 +143,7 @@ impl TimedSwitches {
             search,
             |(switches, system, _), a, b| switches.are_free(system, (&which, sides), a, b),
             |(switches, system, method), a, b| {
-                let crosses = switches.cross(*system, *method, (&which, sides), b);
+                let crosses = switches.cross(system, *method, (&which, sides), b);
                 crosses.then_some([a, b])
             },
         );

@@ -1,5 +1,6 @@
-//! What of a program depends on time alone: where it may break because of that, at times that are
-//! known before anything else is; and its clocks, through which time acts on what depends on more.
+//! The parts of a program that depend on time alone: where it may break because of them, at times
+//! that are known before anything else is; and its clocks, through which time acts on what depends
+//! on more.
 
 use super::breaks::{Break, Levels};
 use super::builder::Builder;
