@@ -4,11 +4,11 @@
 //! T + V  =  T₀ + V₀ + Σ ∫ P dt          up to the error of the balance
 //! ```
 //!
-//! The integrals are taken step by step at the nodes of the method ([`Method::quadrature`]), so that
-//! the balance is as good as the solution: what it lacks is an error of the solution. Where time
-//! turns within a step, which moves what no unknown follows, they are taken from turn to turn. Where
-//! motions say where a mechanism is, they are taken along the steps of its path, and the balance is
-//! what motions do. Nothing is integrated where gravity alone acts.
+//! The integrals are taken step by step at the nodes of the method ([`Method::quadrature`]), so
+//! that the balance is as good as the solution: what it lacks is an error of the solution. Where
+//! time turns within a step, which moves what no unknown follows, they are taken from turn to
+//! turn. Where motions say where a mechanism is, they are taken along the steps of its path, and
+//! the balance is what motions do. Nothing is integrated where gravity alone acts.
 
 use crate::analysis::system::System;
 use crate::analysis::time::continuation::Continuation;
