@@ -44,6 +44,7 @@ mod parting;
 mod peaks;
 #[cfg(test)]
 mod random;
+#[cfg(feature = "solver")]
 mod rate;
 mod record;
 mod reduction;
