@@ -16,8 +16,6 @@ use crate::scene::layout::Layout;
 
 /// Part of a stretch below which the place of a turn is not asked for more exactly.
 const PLACE: f64 = 1e-6;
-/// Stretches that are looked at for one turn, at most.
-const MOST_LOOKS: usize = 400;
 
 /// The clocks of a system.
 #[derive(Clone, Debug, Default)]
@@ -79,7 +77,6 @@ impl Clocks {
         let search = Search {
             first: to - from,
             shortest: PLACE * (to - from),
-            most: MOST_LOOKS,
         };
         while found.len() < most && at < to && !self.is_empty() {
             let steady = |clocks: &mut Self, a: f64, b: f64| clocks.keep_signs(a, b);

@@ -17,8 +17,6 @@ use crate::scalar::Interval;
 use crate::scene::Scene;
 use crate::scene::layout::{Layout, LongRow};
 
-/// Evaluations for one search, at most.
-const MAX_EVALUATIONS: usize = 400;
 /// Steps that go over the rest of the run, at least, where a search took too many evaluations.
 const STEPS_UNSEARCHED: f64 = 100.0;
 /// Distance kept from a break, as a part of the time.
@@ -114,7 +112,6 @@ impl TimeEvents {
         let search = Search {
             first: end - from,
             shortest,
-            most: MAX_EVALUATIONS,
         };
         let found =
             subdivision::first(self, (from, end), search, Self::is_clear, |events, a, b| {

@@ -106,10 +106,9 @@ impl Followed {
         &mut self,
         system: &mut System,
         at: (f64, &[f64]),
-        near: bool,
         out: &mut Trajectory,
     ) -> Result<(), Ended> {
-        self.trigger_with(system, at, (near, Vec::new()), out)
+        self.trigger_with(system, at, (false, Vec::new()), out)
     }
 
     /// Does the same for sensors that have passed their values there as well.

@@ -123,7 +123,7 @@ impl Tracer<'_> {
             self.out.push(target, row);
             watch.collect(self.system, &mut self.out);
         }
-        (self.followed).trigger(self.system, (target, &y), false, &mut self.out)
+        (self.followed).trigger(self.system, (target, &y), &mut self.out)
     }
 
     /// Takes one step of the continuation, with the rows that are the better ones at its beginning;

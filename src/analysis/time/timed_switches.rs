@@ -6,7 +6,8 @@
 //! it, from bounds of the time and of the states there:
 //!
 //! ```text
-//! 1  the whole step    control points of the cubic through both ends, twice as far apart
+//! 1  the whole step    control points of the cubic through both ends, twice as far apart: no proof,
+//!                      but what the error of the step lets expect
 //! 2  stretches         bounds of the interpolant itself ([`Courses`]), divided ([`subdivision`])
 //!                      until each is shown to be free, or is the first that is not
 //! ```
@@ -27,8 +28,6 @@ use crate::scalar::Interval;
 /// Shortest stretch that is bounded, as a part of the step: a touch that is shorter changes nothing
 /// that the step could tell.
 const SHORTEST: f64 = 1e-9;
-/// Stretches of a step that are bounded, at most; then it ends where they do.
-const MOST_STRETCHES: usize = 1000;
 /// Part of a step that must have been shown for it to end there.
 const WORTH_ENDING: f64 = 0.01;
 
@@ -134,7 +133,6 @@ impl TimedSwitches {
         let search = Search {
             first: t1 - t0,
             shortest: SHORTEST * (t1 - t0),
-            most: MOST_STRETCHES,
         };
         let mut course = (&mut *self, &mut *system, &mut *method);
         let found = subdivision::first(
