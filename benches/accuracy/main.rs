@@ -101,7 +101,11 @@ fn surveyed(problems: &[&Problem], method: &str, limit: f64, told: bool) -> Vec<
                 continue;
             }
             let clock = ProcessorClock::start();
-            let samples = problem.samples(method, 10_f64.powi(-exponent), limit);
+            let request = 10_f64.powi(-exponent);
+            let samples = match std::env::var_os("SENTENCES") {
+                Some(_) => problem.sentences(method, request, limit),
+                None => problem.samples(method, request, limit),
+            };
             let Some(samples) = samples else {
                 println!("{method:8} {:18} given up at 1e-{exponent}", problem.name);
                 given_up.insert(&problem.name);

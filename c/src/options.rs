@@ -148,6 +148,14 @@ pub unsafe extern "C" fn cognate_options_accuracy(options: *mut CognateOptions, 
     unsafe { set(options, |o| o.options.accuracy = wanted) }
 }
 
+/// Measures how far off the results are, by a further integration of each dynamic simulation at a
+/// larger permitted error, which costs about six tenths of it; "accuracy" in the record tells.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_measure(options: *mut CognateOptions, wanted: bool) {
+    // SAFETY: NULL or a handle
+    unsafe { set(options, |o| o.options.measure = wanted) }
+}
+
 /// Asks for sets of results of all elements, or for what is asked for alone. Without a word a
 /// session has all of them where the dataset asks for RESULTS, or where no column and no REQUEST is
 /// asked for (of a model of more than 400 elements then the places of the bodies).

@@ -68,6 +68,16 @@ impl Progress {
             },
         );
     }
+    /// Shows that the integration which measures the error has reached `time`, in s.
+    pub fn measures(&self, time: f64, steps: usize) {
+        let text = || {
+            format!(
+                "measuring the error: time {time:.4}, {}",
+                counted(steps, "step")
+            )
+        };
+        self.show(time, text, text);
+    }
     /// Shows that so many of all pictures are drawn.
     #[cfg(feature = "gif")]
     pub fn pictures(&self, done: usize, all: usize) {

@@ -86,6 +86,10 @@ pub struct Args {
     /// Give every column bars of error (`name±`), from a further run at a smaller request
     #[arg(long)]
     accuracy: bool,
+    /// Do not measure how far off the results are, which takes a further integration at a larger
+    /// request
+    #[arg(long, conflicts_with = "accuracy")]
+    no_accuracy: bool,
     /// Say nothing but mistakes, and draw no picture of the table
     #[arg(long)]
     quiet: bool,
@@ -111,6 +115,10 @@ impl Watch for Terminal<'_> {
         interrupt::results_begin();
         self.guard.moves();
         self.progress.borrow().at(t, stats.steps);
+    }
+    fn measures(&mut self, t: f64, stats: &Stats) {
+        self.guard.moves();
+        self.progress.borrow().measures(t, stats.steps);
     }
     fn simulated(&mut self, run: &Run) {
         match self.left.get() {
@@ -402,6 +410,7 @@ fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session 
         body_rates: args.body_motion,
         only: args.only.clone(),
         accuracy: args.accuracy,
+        measure: !args.no_accuracy,
         threads: Some(args.threads.unwrap_or(0)),
         ..Options::default()
     };

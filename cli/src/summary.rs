@@ -195,7 +195,10 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
     if !r.stop_reason.is_empty() {
         text += &format!("{}\n", r.stop_reason);
     }
-    text += &r.accuracy.as_ref().map(believed).unwrap_or_default();
+    let said = r.accuracy.as_ref().map(Accuracy::sentence);
+    if let Some(said) = said.filter(|said| !said.is_empty()) {
+        text += &format!("{said}\n");
+    }
     for simulation in r.simulations.iter().filter(|s| !s.worst.is_empty()) {
         text += &format!(
             "worst at the end of {} at time {}: {}\n",
@@ -261,29 +264,6 @@ fn times(s: &Seconds) -> String {
         phases.join(", "),
         1e3 * s.processor
     )
-}
-
-/// Tells how many digits to believe, and of which channel the fewest.
-fn believed(accuracy: &Accuracy) -> String {
-    let Some(worst) = accuracy.worst() else {
-        return String::new();
-    };
-    let [usual, least] = [worst.digits(), worst.least_digits()].map(|d| format!("{d:.1}"));
-    let at_worst = match usual == least {
-        true => String::new(),
-        false => format!(" ({least} where it is least known)"),
-    };
-    let mut text = format!(
-        "believe {usual} digits{at_worst}: {} is the worst, ±{:.1e} {}\n",
-        worst.channel, worst.usual_bar, worst.unit
-    );
-    let lost = accuracy.channels.iter();
-    let lost = lost.filter_map(|c| Some((c.lost_from?, &c.channel)));
-    if let Some((t, channel)) = lost.min_by(|a, b| a.0.total_cmp(&b.0)) {
-        text +=
-            &format!("the phase is lost from time {t} on: {channel} may be anything it reaches\n");
-    }
-    text
 }
 
 /// Number of warnings of one kind that are shown.

@@ -48,6 +48,10 @@ class Options(TypedDict, total=False):
         Method of integration (``"AUTO"`` chooses by itself).
     accuracy : bool
         Give every column bars of error, from a further run at a smaller request.
+    measure : bool
+        Measure how far off the results are, by a further integration at a larger request, which
+        costs about six tenths of the run: `Run.accuracy` tells. Where left out: a run by itself does
+        so, unless a routine for USER would be called again; the runs of a sweep do not.
     full : bool
         Sets of results of all elements. Where left out: if the dataset asks for RESULTS, and if
         nothing else is asked for, no column and no REQUEST (of a model of more than 400 elements
@@ -72,6 +76,7 @@ class Options(TypedDict, total=False):
     error: float
     method: str
     accuracy: bool
+    measure: bool
     full: bool
     frames: bool
     max_steps: int
@@ -102,6 +107,7 @@ def choices_of(model: Model, options: Options) -> dict[str, Any]:
         "error": None,
         "method": None,
         "accuracy": False,
+        "measure": None,
         "full": None,
         "frames": False,
         "max_steps": None,

@@ -206,6 +206,15 @@ class Run(Columns):
         return self._core.title
 
     @property
+    def accuracy(self) -> str | None:
+        """How far off the run is, as it has measured it, in a sentence: how many digits to believe.
+
+        The figures are in `record`. None where nothing was integrated, or nothing was measured.
+        """
+        accuracy = self.record["accuracy"]
+        return accuracy["sentence"] if accuracy else None
+
+    @property
     def record(self) -> dict[str, Any]:
         """Status, counts, timings, energy, accuracy and warnings, as ``cognate run --json``."""
         if self._record is None:

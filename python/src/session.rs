@@ -29,6 +29,7 @@ pub struct Choices {
     error: Option<f64>,
     method: Option<String>,
     accuracy: bool,
+    measure: Option<bool>,
     full: Option<bool>,
     frames: bool,
     max_steps: Option<usize>,
@@ -69,6 +70,8 @@ impl Choices {
             limit: self.limit,
             threads: self.threads,
             accuracy: self.accuracy,
+            // a routine of the caller's is asked once for each instant, unless it may be asked again
+            measure: self.measure.unwrap_or(self.user.is_empty()),
             ..Options::default()
         };
         of.prepared.setup.solve.complete(&mut options);

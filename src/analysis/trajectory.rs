@@ -5,7 +5,6 @@ use crate::numeric::{Memory, Stats, Stop};
 use crate::scene::broken::Broken;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// The reason why an analysis ended before the last output time.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,8 +82,6 @@ pub struct EnergyFlow {
     pub scale: f64,
     /// largest error of the balance
     pub imbalance: f64,
-    /// time that the account itself took, which is no part of solving
-    pub spent: Duration,
 }
 
 /// Roundings of potential energies that a balance may be off by.
@@ -104,7 +101,6 @@ impl EnergyFlow {
             kinetic: self.kinetic.max(later.kinetic),
             scale: self.scale.max(later.scale).max(of_works),
             imbalance: self.imbalance + later.imbalance,
-            spent: self.spent + later.spent,
         }
     }
 
@@ -121,7 +117,6 @@ impl EnergyFlow {
             kinetic: self.kinetic + other.kinetic,
             scale: self.scale + other.scale,
             imbalance: self.imbalance + other.imbalance,
-            spent: self.spent + other.spent,
         }
     }
 

@@ -13,6 +13,8 @@ pub trait Watch {
     }
     /// Takes note of the time that has been reached, of the last step, and of what it all has cost.
     fn progress(&mut self, _t: f64, _h: f64, _stats: &Stats) {}
+    /// Takes note of the time that the integration has reached which measures the error.
+    fn measures(&mut self, _t: f64, _stats: &Stats) {}
     /// Takes note of the state at the end of a step   (n_y, or more)
     fn visit(&mut self, _system: &System, _t: f64, _y: &[f64]) {}
     /// Takes states that have been put out; all but the last may be

@@ -135,6 +135,7 @@ fn accuracy(a: &Accuracy) -> Value {
         })
     };
     json!({
+        "sentence": a.sentence(),
         "companion_errors": a.companions,
         "digits": a.worst().map(ChannelAccuracy::digits),
         "worst": a.worst().map(channel),

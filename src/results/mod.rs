@@ -36,6 +36,7 @@ pub use digest::digest;
 pub use file::{read, write, write_bytes, write_text};
 pub use log::Event;
 pub use number::{digits, digits_of_six};
+pub(crate) use record::USUAL_SHARE;
 pub use record::{
     Accuracy, ChannelAccuracy, Counts, Energy, Jump, Loads, Quantity, RankChange, Record,
     RowChange, Simulation, Status, Warning,

@@ -1,7 +1,7 @@
 //! The record of a run: how it ended, what it cost, and what the user should know.
 
 use super::run::catch_up;
-use super::{Kind, Seconds};
+use super::{Kind, Seconds, digits_of_six};
 use crate::diagnostic::{Diagnostic, Subject};
 use crate::scalar::Scalar;
 
@@ -129,6 +129,9 @@ impl Energy {
     }
 }
 
+/// Share of the outputs at which the usual bar of a channel holds.
+pub(crate) const USUAL_SHARE: f64 = 0.95;
+
 /// The bars of error of a run, in short.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Accuracy {
@@ -169,7 +172,74 @@ impl ChannelAccuracy {
     }
 }
 
+impl ChannelAccuracy {
+    /// Takes further bars, of values up to `size`: the largest so far of each kind counts, and the
+    /// first time from which on the phase is lost.
+    pub(crate) fn see(&mut self, bars: &[f64], size: f64, lost_from: Option<f64>) {
+        let mut bars: Vec<f64> = bars.iter().copied().filter(|b| b.is_finite()).collect();
+        bars.sort_by(f64::total_cmp);
+        let usual = (USUAL_SHARE * bars.len() as f64).ceil() as usize;
+        let usual = bars.get(usual.saturating_sub(1)).copied().unwrap_or(0.0);
+        let largest = bars.last().copied().unwrap_or(0.0);
+        let relative = |bar: f64| if size > 0.0 { bar / size } else { 0.0 };
+        self.largest_bar = self.largest_bar.max(largest);
+        self.usual_bar = self.usual_bar.max(usual);
+        self.relative = self.relative.max(relative(largest));
+        self.usual = self.usual.max(relative(usual));
+        self.lost_from = self.lost_from.or(lost_from);
+    }
+}
+
 impl Accuracy {
+    /// Returns the entry of a column, a new one where there is none.
+    pub(crate) fn channel(&mut self, name: &str, unit: &str) -> &mut ChannelAccuracy {
+        let found = self.channels.iter().position(|c| c.channel == name);
+        let k = found.unwrap_or(self.channels.len());
+        if found.is_none() {
+            self.channels.push(ChannelAccuracy {
+                channel: name.into(),
+                unit: unit.into(),
+                ..ChannelAccuracy::default()
+            });
+        }
+        &mut self.channels[k]
+    }
+
+    /// Says how many digits to believe, and of which channel the fewest; empty where nothing is
+    /// known.
+    pub fn sentence(&self) -> String {
+        let Some(worst) = self.worst() else {
+            return String::new();
+        };
+        let [usual, least] = [worst.digits(), worst.least_digits()].map(|d| format!("{d:.1}"));
+        let at_worst = match usual == least {
+            true => String::new(),
+            false => format!(" ({least} where it is least known)"),
+        };
+        let size = match worst.usual > 0.0 {
+            true => {
+                let size = format!("{:.2e}", worst.usual_bar / worst.usual);
+                format!(" of {}", digits_of_six(size.parse().unwrap_or(f64::NAN)))
+            }
+            false => String::new(),
+        };
+        let bar = format!("±{:.1e}{size} {}", worst.usual_bar, worst.unit);
+        let mut text = format!(
+            "believe {usual} digits{at_worst}: {} is the worst, {}",
+            worst.channel,
+            bar.trim_end()
+        );
+        let lost = self.channels.iter();
+        let lost = lost.filter_map(|c| Some((c.lost_from?, &c.channel)));
+        if let Some((t, channel)) = lost.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            text += &format!(
+                "; the phase is lost from time {} on: {channel} may be anything it reaches",
+                digits_of_six(t)
+            );
+        }
+        text
+    }
+
     /// Returns the channel with the largest usual bar, relative to its values.
     pub fn worst(&self) -> Option<&ChannelAccuracy> {
         let known = self.channels.iter().filter(|c| !c.usual.is_nan());

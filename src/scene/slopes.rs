@@ -42,17 +42,6 @@ pub fn recorded(
     (gradient.n_operations() <= MAX_OPERATIONS).then_some(gradient)
 }
 
-/// Records the derivatives of one output of a program with respect to the numbers at `places`.
-pub fn of_output(program: &Program, output: usize, places: impl Iterator<Item = usize>) -> Program {
-    let mut builder = Builder::new(Folding::Structural);
-    let outputs = program.record(&mut builder);
-    let places: Vec<_> = places
-        .map(|k| builder.input(Input::Slot(k as u32)))
-        .collect();
-    let gradient = builder.gradient(outputs[output], &places);
-    builder.finish_with_inputs(&gradient, program.inputs())
-}
-
 /// A direction: places in the row of numbers, each with the slope of its number.
 pub type Direction = Vec<(usize, f64)>;
 

@@ -84,6 +84,19 @@ pub fn companion_request(error: f64, methods: &[String], has_many_events: bool) 
     }
 }
 
+/// Largest request of an integration that tells the error of another: beyond it errors follow
+/// requests no longer.
+pub const LARGEST_REQUEST: f64 = 1e-2;
+
+/// Returns the request of an integration that takes 2^(−¾) = 0.6 of the steps of a run by a
+/// method, or by several.
+pub fn looser_request(error: f64, methods: &[String]) -> f64 {
+    let worked = |name: &str| methods.iter().any(|n| n == name);
+    let rows = METHODS.iter().filter(|m| worked(m.name));
+    let order = rows.map(|m| m.order).min().unwrap_or(1);
+    error * Scalar::powf(2.0, 0.75 * order as f64)
+}
+
 /// Factors that make bars of what is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Safety {

@@ -259,10 +259,7 @@ impl Mechanisms {
                 break;
             }
         }
-        let mut parts = self.energy();
-        // side by side
-        parts.spent /= threads.clamp(1, self.len()) as u32;
-        out.energy = before.followed_by(&parts);
+        out.energy = before.followed_by(&self.energy());
         again
     }
 

@@ -21,8 +21,6 @@ const SHARE_OF_EVENTS: f64 = 0.3;
 /// Events over steps from which on few steps lie between two of them, and their number hardly
 /// follows the request.
 const EVENTS_OVER_STEPS: f64 = 0.03;
-/// Share of the outputs at which the usual bar of a channel holds.
-const USUAL_SHARE: f64 = 0.95;
 
 /// The pace of a companion.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +47,24 @@ impl Default for Pace {
 }
 
 impl Pace {
+    /// Returns that of an integration beside another, for its columns alone.
+    pub(super) fn beside() -> Self {
+        Self {
+            columns_alone: true,
+            ..Self::default()
+        }
+    }
+
+    /// Returns the same with shorter steps where something else than the request sets them.
+    pub(super) fn shorter(last: &Integrated) -> Self {
+        Self {
+            steps: SHORTER_STEPS,
+            longest: (last.unasked_step).map_or(f64::INFINITY, |h| SHORTER_STEPS * h),
+            rest: TIGHTER_REST,
+            ..Self::beside()
+        }
+    }
+
     /// Returns the longest step where that of the model is given.
     pub(super) fn longest_step(&self, given: f64) -> f64 {
         (given * self.steps).min(self.longest)
@@ -87,6 +103,28 @@ impl Integrated {
     }
 }
 
+impl Integrated {
+    /// Returns the names of the methods that worked.
+    pub(super) fn methods(&self) -> &[String] {
+        &self.methods
+    }
+
+    /// Returns the times of events, in s.
+    pub(super) fn events(&self) -> &[f64] {
+        &self.events
+    }
+
+    /// Returns whether few steps lie between two events.
+    pub(super) fn has_many_events(&self) -> bool {
+        self.has_many_events
+    }
+
+    /// Returns whether something else than the request sets the steps.
+    pub(super) fn has_steps_unasked(&self) -> bool {
+        self.unasked_step.is_some()
+    }
+}
+
 /// Numbers of sequences of both runs before a simulation.
 pub(super) struct Begun {
     own: usize,
@@ -97,7 +135,7 @@ impl Session {
     /// Returns a companion that begins where the session is.
     fn new_companion(&self) -> Box<Session> {
         let mut options = self.options.clone();
-        (options.accuracy, options.repeat) = (false, 1);
+        (options.accuracy, options.measure, options.repeat) = (false, false, 1);
         let mut companion = Session::new(self.model.clone(), &self.run.name, options);
         companion.hooks.clone_from(&self.hooks);
         companion.carried.clone_from(&self.carried);
@@ -185,12 +223,7 @@ impl Session {
     /// Sets how a companion differs from the session.
     fn set_pace(&self, companion: &mut Session, request: f64) {
         companion.options.error = Some(request);
-        companion.pace = Pace {
-            steps: SHORTER_STEPS,
-            longest: (self.last.unasked_step).map_or(f64::INFINITY, |h| SHORTER_STEPS * h),
-            rest: TIGHTER_REST,
-            columns_alone: true,
-        };
+        companion.pace = Pace::shorter(&self.last);
         if companion.carried.is_none() {
             // both begin in the same configuration
             companion.columns_program.clone_from(&self.columns_program);
@@ -245,31 +278,17 @@ impl Session {
         }
         let accuracy = record.accuracy.get_or_insert_default();
         let column = &self.run.columns[of];
-        let found = accuracy
-            .channels
-            .iter()
-            .position(|c| c.channel == column.name);
-        let k = found.unwrap_or_else(|| {
-            accuracy.channels.push(ChannelAccuracy {
-                channel: column.name.clone(),
-                unit: column.unit.clone(),
-                ..ChannelAccuracy::default()
-            });
-            accuracy.channels.len() - 1
-        });
-        let channel = &mut accuracy.channels[k];
         // over all simulations so far
         let bars = &self.run.columns[bar].values;
-        let mut bars: Vec<f64> = bars.iter().copied().filter(|b| b.is_finite()).collect();
-        bars.sort_by(f64::total_cmp);
-        let usual = (USUAL_SHARE * bars.len() as f64).ceil() as usize;
-        channel.largest_bar = bars.last().copied().unwrap_or(0.0);
-        channel.usual_bar = bars.get(usual.saturating_sub(1)).copied().unwrap_or(0.0);
         let largest = column.values.iter().fold(least, |m, x| m.max(x.abs()));
-        let relative = |bar: f64| if largest > 0.0 { bar / largest } else { 0.0 };
-        channel.relative = relative(channel.largest_bar);
-        channel.usual = relative(channel.usual_bar);
-        channel.lost_from = channel.lost_from.or(lost_from);
+        let channel = accuracy.channel(&column.name, &column.unit);
+        *channel = ChannelAccuracy {
+            channel: column.name.clone(),
+            unit: column.unit.clone(),
+            lost_from: channel.lost_from,
+            ..ChannelAccuracy::default()
+        };
+        channel.see(bars, largest, lost_from);
     }
 }
 

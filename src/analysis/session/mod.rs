@@ -17,11 +17,13 @@ mod doors;
 mod growth;
 mod kept;
 mod limit;
+mod measured;
 mod outcome;
 mod over_time;
 mod phase;
 mod placed;
 mod preview;
+mod ranges;
 mod requests;
 mod rows;
 pub mod script;
@@ -39,7 +41,6 @@ mod state_values;
 mod states;
 mod stiffness;
 mod stop_reason;
-mod swings;
 mod tilts;
 
 use crate::analysis::linear::{self, Linearization};
@@ -129,6 +130,9 @@ pub struct Options {
     pub threads: Option<usize>,
     /// give every column bars of error, from further runs at other requests
     pub accuracy: bool,
+    /// measure how far off results are, by one further integration of each dynamic simulation at a
+    /// larger request, which costs about six tenths of it; `accuracy` says more
+    pub measure: bool,
     /// keep the states of all rows: columns may then be named after a simulation, see
     /// [`Session::add_column`]
     pub keep_states: bool,
@@ -207,6 +211,8 @@ pub struct Session {
     pace: Pace,
     /// the last simulation over time
     last: Integrated,
+    /// what an integration that measures the error is off by at the end of the last simulation
+    beside: Option<measured::Beside>,
     /// stiffness that simulations have met, where the program chooses the method
     stiffness: MetStiffness,
     /// states of the rows so far, where they are kept
@@ -278,6 +284,7 @@ impl Session {
             strayed: false,
             pace: Pace::default(),
             last: Integrated::default(),
+            beside: None,
             stiffness: MetStiffness::default(),
             states: Vec::new(),
             starts: Starts::default(),

@@ -3,6 +3,7 @@
 use super::apart::Mechanisms;
 use super::companion::Integrated;
 use super::growth::Growth;
+use super::measured::{Measured, Sampled};
 use super::outcome::counts;
 use super::phase::Phase;
 use super::rows::{Follower, Seen};
@@ -49,8 +50,15 @@ impl Session {
         let settles = self.settles(system);
         let chosen = system.configuration.active.clone();
         let mut seen = self.begin_rows(kind, program, (system, span.end));
-        let (mut trajectory, [seconds, processor]) =
-            self.timed(system, (kind, span), &settings, (&mut seen, watch))?;
+        let outputs = span.output.times(span.start, span.end);
+        let start = self.measures(kind).then(|| system.clone());
+        seen.sampled = (start.is_some()).then(|| Sampled::of(&self.run, &outputs));
+        let (mut trajectory, [seconds, processor]) = self.timed(
+            system,
+            (kind, span, &outputs),
+            &settings,
+            (&mut seen, watch),
+        )?;
         // its results
         let phase = Phase::begin();
         let until = trajectory.t.len();
@@ -67,7 +75,7 @@ impl Session {
         self.note_drift(system, &seen.balance);
         let mut typical = vec![0.0; system.scene.layout.n_y()];
         Ode::typical(system, &mut typical);
-        self.account(&trajectory.energy, !seen.swings.stood_still(&typical));
+        self.account(&trajectory.energy, !seen.ranges.stood_still(&typical));
         if settings.is_auto() && kind == Kind::Dynamic {
             self.stiffness.see(&trajectory, span.end - span.start);
         }
@@ -77,8 +85,8 @@ impl Session {
             let stops = matches!(stopped, Some(StopReason::Method { .. }));
             self.warn_of_growth(seen.looks.growth(system, stops));
         }
-        if seen.swings.exceed(settings.error) {
-            self.warn_of_energy(system, &seen, (&trajectory, settings.error));
+        if seen.ranges.exceed(settings.error) {
+            self.warn_of_energy(&trajectory);
         }
         if kind == Kind::Dynamic && !settles {
             self.warn_of_small_motion(system, &seen, (&typical, settings.error));
@@ -91,6 +99,17 @@ impl Session {
         self.keep(system, last);
         self.keep_left(trajectory.left.take(), &system.scene);
         phase.end(&mut self.run.record.seconds, |s| &mut s.evaluate);
+        if let (Some(start), Some(sampled)) = (start, &seen.sampled) {
+            let measured = Measured {
+                kind,
+                span,
+                program,
+                settings: &settings,
+                sampled,
+                trajectory: &trajectory,
+            };
+            self.measure(&start, &measured, watch);
+        }
         // the record
         self.warn_of_stability(&trajectory);
         self.run.record.error = Some(settings.error);
@@ -146,11 +165,10 @@ impl Session {
     fn timed(
         &mut self,
         system: &mut System,
-        (kind, span): (Kind, Span),
+        (kind, span, outputs): (Kind, Span, &[f64]),
         settings: &Options,
         (seen, watch): (&mut Seen, &mut dyn Watch),
     ) -> Result<(Trajectory, [f64; 2]), Vec<Diagnostic>> {
-        let outputs = span.output.times(span.start, span.end);
         let settings = &Options {
             may_part: kind == Kind::Dynamic && self.may_part(system),
             ..settings.clone()
@@ -180,35 +198,53 @@ impl Session {
             }
             system.numbers.copy_from_slice(&first);
             let phase = Phase::begin();
-            let mut taken = 0.0;
-            let mut follower = Follower::new(self, seen, watch, k == repeat);
-            trajectory = match &mut path {
-                Some(path) => kinematics::trace(system, path, &outputs, settings, &mut follower),
-                None => dynamics::integrate(system, &outputs, settings, &mut follower),
-            };
-            if let Some(numbers) = trajectory.parted.take() {
-                let seen = (&mut *seen, k == repeat);
-                taken = self.go_on_apart(
-                    (system, numbers),
-                    (span.start, &outputs),
-                    settings,
-                    seen,
-                    watch,
-                    &mut trajectory,
-                );
-            }
+            let taken;
+            (trajectory, taken) = self.integrated(
+                (system, path.as_mut()),
+                (span.start, outputs),
+                settings,
+                (seen, watch, k == repeat),
+            );
             let (own, translation) = phase.elapsed();
-            let spent = trajectory.energy.spent.as_secs_f64() + seen.seconds;
-            let solving = (own - taken - spent).max(0.0);
+            let solving = own - taken - seen.seconds;
             processor += phase.processor_seconds(solving);
             seconds.push(solving);
             self.run.record.seconds.translate += translation;
-            self.run.record.seconds.evaluate += spent;
+            self.run.record.seconds.evaluate += seen.seconds;
         }
         let mean = processor / seconds.len() as f64;
         seconds.sort_by(f64::total_cmp);
         let median = seconds[seconds.len() / 2];
         Ok((trajectory, [median, mean]))
+    }
+
+    /// Integrates through some outputs, or follows a path of positions; returns the trajectory, and
+    /// the time that it took to take mechanisms apart, without that of translation, in s.
+    /// `is_kept`: its rows are the results.
+    pub(super) fn integrated(
+        &mut self,
+        (system, path): (&mut System, Option<&mut Continuation>),
+        (begun, outputs): (f64, &[f64]),
+        settings: &Options,
+        (seen, watch, is_kept): (&mut Seen, &mut dyn Watch, bool),
+    ) -> (Trajectory, f64) {
+        let mut follower = Follower::new(self, seen, watch, is_kept);
+        let mut trajectory = match path {
+            Some(path) => kinematics::trace(system, path, outputs, settings, &mut follower),
+            None => dynamics::integrate(system, outputs, settings, &mut follower),
+        };
+        let taken = match trajectory.parted.take() {
+            Some(numbers) => self.go_on_apart(
+                (system, numbers),
+                (begun, outputs),
+                settings,
+                (seen, is_kept),
+                watch,
+                &mut trajectory,
+            ),
+            None => 0.0,
+        };
+        (trajectory, taken)
     }
 
     /// Lets mechanisms that nothing couples go on each by itself to the end, as far as that pays;
@@ -329,31 +365,12 @@ impl Session {
         }
     }
 
-    /// Warns where the energy of the motion, or the phase of long swings, is not sure any more.
-    fn warn_of_energy(
-        &mut self,
-        system: &mut System,
-        seen: &Seen,
-        (trajectory, error): (&Trajectory, f64),
-    ) {
+    /// Warns where the balance of energy does not close.
+    fn warn_of_energy(&mut self, trajectory: &Trajectory) {
         let flow = &trajectory.energy;
         if flow.imbalance > TOLD_ENERGY * flow.scale {
             let share = flow.imbalance / flow.scale;
             self.warn(RunWarning::EnergyUnsure { share });
-        }
-        let method = trajectory.methods.last().map_or("", |m| &m.1);
-        let worked = (method, trajectory.stats.steps, error);
-        let rows = seen.looks.rows();
-        if let Some(unsure) = seen.swings.unsure(flow, worked, (system, rows)) {
-            self.warn(RunWarning::PhaseUnsure {
-                swings: unsure.swings,
-                off: unsure.off,
-            });
-        } else if let Some(added) = seen.swings.added_up(flow, worked, (system, rows)) {
-            self.warn(RunWarning::ErrorsAddUp {
-                swings: added.swings,
-                requests: added.requests,
-            });
         }
     }
 
@@ -377,7 +394,7 @@ impl Session {
         let l = system.scene.layout;
         let begin = l.y().start;
         let of = |places: Range<usize>| &typical[places.start - begin..places.end - begin];
-        let reach = seen.swings.reach([of(l.q()), of(l.v())]);
+        let reach = seen.ranges.reach([of(l.q()), of(l.v())]);
         let floor = numeric::Options::default().floor;
         if reach > RESTING && reach < SMALL * floor {
             self.warn(RunWarning::SmallMotion {

@@ -6,8 +6,9 @@
 //! and maxima that do not know where a group ends.
 
 use super::growth::Looks;
+use super::measured::Sampled;
+use super::ranges::Ranges;
 use super::spline_range::Readings;
-use super::swings::Swings;
 use super::tilts::Tilts;
 use super::{Session, columns};
 use crate::analysis::system::System;
@@ -41,9 +42,11 @@ pub(super) struct Seen {
     rows: usize,
     pub balance: Balance,
     pub looks: Looks,
-    pub swings: Swings,
+    pub ranges: Ranges,
     pub readings: Readings,
     pub tilts: Tilts,
+    /// what another integration is to be compared with
+    pub sampled: Option<Sampled>,
     /// time that seeing took, in s
     pub seconds: f64,
 }
@@ -161,12 +164,13 @@ impl Session {
             rows: 0,
             balance: Balance::default(),
             looks: Looks::begin(system, end),
-            swings: match kind {
-                Kind::Dynamic => Swings::begin(&system.scene.layout, &system.numbers),
-                _ => Swings::default(),
+            ranges: match kind {
+                Kind::Dynamic => Ranges::begin(&system.scene.layout, &system.numbers),
+                _ => Ranges::default(),
             },
             readings: self.readings(system),
             tilts: Tilts::of(system),
+            sampled: None,
             seconds: 0.0,
         };
         let first = std::slice::from_ref(&system.numbers);
@@ -209,6 +213,9 @@ impl Session {
             rows.iter().for_each(|row| seen.readings.see(row));
             seen.tilts.see(rows);
             seen.rows = end;
+            if let Some(sampled) = &mut seen.sampled {
+                sampled.take(&self.run, rows.len());
+            }
             self.hand_over(rows.len());
         }
         trajectory.release(until);
@@ -286,7 +293,7 @@ impl Watch for Follower<'_> {
             (system.scene.layout).set_state(&mut self.visited, t, y);
             self.seen.readings.see(&self.visited);
             self.seen.looks.see(&self.visited);
-            self.seen.swings.see(&self.visited);
+            self.seen.ranges.see(&self.visited);
         }
     }
     fn collect(&mut self, system: &System, trajectory: &mut Trajectory) {

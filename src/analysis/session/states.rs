@@ -31,7 +31,7 @@ impl Session {
         rows: &[Vec<f64>],
         means: impl Fn(usize) -> Option<&'a Vec<(f64, Vec<f64>)>>,
     ) {
-        if !self.options.keep_states || self.receiver.is_some() {
+        if !self.options.keep_states || self.receiver.is_some() || self.pace.columns_alone {
             return;
         }
         let is_same = |s: &Stretch| {

@@ -158,28 +158,6 @@ impl System {
         find_gap(jacobian, dfdt.len())
     }
 
-    /// Records the derivatives of one rate with respect to all unknowns, on the branches that the
-    /// numbers say; `None` where it reads what is solved for or supplied beside the programs.
-    pub(in crate::analysis) fn slopes_of_rate(&self, i: usize) -> Option<Recording> {
-        let beside = self.recorded.loops.is_some() || !self.recorded.external.is_empty();
-        let rate = &self.recorded.rate.program;
-        let slopes = || slopes::of_output(rate, i, self.scene.layout.y());
-        (!beside).then(slopes).map(Recording::new)
-    }
-
-    /// Evaluates the derivatives of all rates by time at the present numbers.   (n)
-    pub(in crate::analysis) fn rates_by_time(&mut self, dfdt: &mut [f64]) -> Result<(), Failure> {
-        if !self.reads_time() {
-            dfdt.fill(0.0);
-            return Ok(());
-        }
-        self.along_sums(&[vec![Layout::TIME]], |_, slope| {
-            for (i, entry) in dfdt.iter_mut().enumerate() {
-                *entry = slope(i);
-            }
-        })
-    }
-
     fn jacobian_by_duals(
         &mut self,
         n: usize,

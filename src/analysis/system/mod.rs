@@ -60,7 +60,6 @@ use crate::scene::recorder::Recorder;
 use branches::Branches;
 use closures::Hook;
 use recorded::Recorded;
-pub(in crate::analysis) use recording::Recording;
 pub(in crate::analysis) use rows::RowGradients;
 use singular_step::SingularSteps;
 use std::cell::OnceCell;

@@ -14,7 +14,6 @@ use crate::analysis::system::System;
 use crate::analysis::time::continuation::Continuation;
 use crate::analysis::time::counting::Counting;
 use crate::analysis::trajectory::EnergyFlow;
-use crate::clock::Moment;
 use crate::numeric::quadrature::{GAUSS_KRONROD_15, Node, over_interpolant};
 use crate::numeric::{Failure, Method, Step};
 
@@ -79,7 +78,6 @@ impl DrivenAccount {
         if to <= from || self.flow.start.is_none() || system.scene.forces.is_empty() {
             return;
         }
-        let clock = Moment::now();
         let kept = system.numbers.clone();
         let counts = system.counts_turns();
         if counts {
@@ -108,7 +106,6 @@ impl DrivenAccount {
             self.flow.imbalance += piece.error;
         }
         system.numbers.copy_from_slice(&kept);
-        self.flow.spent += clock.elapsed();
     }
 
     /// Ends the account at a time within the last step of a path.
@@ -227,17 +224,11 @@ fn kronrod() -> Vec<(f64, f64)> {
     GAUSS_KRONROD_15.iter().flat_map(sides).collect()
 }
 
-/// The first steps are timed each, as many as this, and after them one of as many, which counts for
-/// all: reading the clock twice takes a tenth of a small account.
-const TIMED: u32 = 16;
-
 /// The account of a leg: scratch, and when the balance is looked at next.
 #[derive(Debug, Default)]
 pub(super) struct Accountant {
     work: [Vec<f64>; 2],
     due: f64,
-    /// steps so far
-    n_steps: u32,
 }
 
 impl Accountant {
@@ -253,7 +244,6 @@ impl Accountant {
     ) -> Option<[f64; 2]> {
         flow.start?;
         if system.does_work() {
-            let clock = self.clock();
             let ends = [step.t0, step.t1];
             let works = &mut flow.works;
             let mut visit = |system: &mut System, node: Node<'_>| {
@@ -279,9 +269,6 @@ impl Accountant {
             }
             // what forces hold between two looks is part of all energy, too
             flow.scale = flow.works.iter().fold(flow.scale, |m, w| m.max(w.abs()));
-            if let Some((begin, steps)) = clock {
-                flow.spent += steps * begin.elapsed();
-            }
         }
         if step.t1 < self.due && step.t1 < end {
             return None;
@@ -290,14 +277,5 @@ impl Accountant {
         let energy = system.energy(step.t1, method.y())?;
         flow.look(energy);
         Some(energy)
-    }
-
-    /// Returns, where a step is timed, when it begins and for how many steps it counts.
-    fn clock(&mut self) -> Option<(Moment, u32)> {
-        let n = self.n_steps;
-        self.n_steps = n.wrapping_add(1);
-        let counts_for = if n < TIMED { 1 } else { TIMED };
-        n.is_multiple_of(counts_for)
-            .then(|| (Moment::now(), counts_for))
     }
 }

@@ -4,9 +4,8 @@ use super::{Names, Rate, Unrest};
 use crate::analysis::quantity::{amount, place, short};
 use crate::diagnostic::{Diagnostic, Subject, counted};
 use crate::model::{ElementId, ElementKind};
-use crate::results::{Quantity, RankChange, RowChange, Units, digits_of_six};
+use crate::results::{ChannelAccuracy, Quantity, RankChange, RowChange, Units, digits_of_six};
 use crate::scene::equations::Unsupported;
-use std::f64::consts::PI;
 
 /// One in so many steps that ask for too much is no matter of the request.
 const FEW_STEPS: usize = 20;
@@ -151,18 +150,11 @@ pub enum RunWarning {
         /// what it lacks, over all energy
         share: f64,
     },
-    /// errors of many swings have added up to a part of a swing
-    PhaseUnsure {
-        /// number of swings
-        swings: f64,
-        /// error of the phase that may have added up, rad
-        off: f64,
-    },
-    /// errors of many undamped swings have added up to many times the request
+    /// errors have added up to many times the request, as a further integration has measured
     ErrorsAddUp {
-        /// number of swings
-        swings: f64,
-        /// about how far off the swings may be, over their width and the request
+        /// the column that is farthest off
+        channel: ChannelAccuracy,
+        /// how far, over its size and the request
         requests: f64,
     },
     /// nothing moves by more than a small part of the size of the model
@@ -221,7 +213,6 @@ impl RunWarning {
             RunWarning::StabilityLimited { .. } => "stiff",
             RunWarning::EnergyGrows { .. } => "energy_grows",
             RunWarning::EnergyUnsure { .. } => "energy_unsure",
-            RunWarning::PhaseUnsure { .. } => "phase_unsure",
             RunWarning::ErrorsAddUp { .. } => "errors_add_up",
             RunWarning::SmallMotion { .. } => "small_motion",
             RunWarning::CompanionEnded { .. } => "accuracy_unknown",
@@ -255,7 +246,6 @@ impl RunWarning {
             | RunWarning::BelowRounding { .. }
             | RunWarning::RoundingAddsUp { .. }
             | RunWarning::EnergyUnsure { .. }
-            | RunWarning::PhaseUnsure { .. }
             | RunWarning::ErrorsAddUp { .. }
             | RunWarning::SmallMotion { .. }
             | RunWarning::StabilityLimited { .. }
@@ -331,8 +321,7 @@ impl RunWarning {
                 fed_by,
             } => growth(*factor, *within, fed_by.is_some()),
             RunWarning::EnergyUnsure { share } => energy(*share),
-            RunWarning::PhaseUnsure { swings, off } => phase(*swings, *off),
-            RunWarning::ErrorsAddUp { swings, requests } => errors_add_up(*swings, *requests),
+            RunWarning::ErrorsAddUp { channel, requests } => errors_add_up(channel, *requests),
             RunWarning::SmallMotion {
                 reach,
                 share,
@@ -437,22 +426,28 @@ fn energy(share: f64) -> String {
     )
 }
 
-/// Returns how far off the phase of swings may be in the end, rad.
-fn phase(swings: f64, off: f64) -> String {
-    let known = if off < PI { "not sure" } else { "lost" };
-    format!(
-        "the phase of about {swings:.0} swings is {known}: its error may reach {off:.1} rad by the \
-         end; a smaller ERROR makes it less, and --accuracy shows when the phase is lost"
-    )
+/// Returns how far errors have added up.
+fn errors_add_up(channel: &ChannelAccuracy, requests: f64) -> String {
+    let (name, bar) = (
+        &channel.channel,
+        amount_of(channel.usual_bar, &channel.unit),
+    );
+    match channel.lost_from {
+        Some(t) => format!(
+            "{name} is known no longer from time {} on: errors of the run have grown to all that it \
+             does; a smaller ERROR makes them less",
+            short(t)
+        ),
+        None => format!(
+            "errors have added up in {name}: it may be off by ±{bar}, some {requests:.0} times the \
+             requested error; a smaller ERROR makes it less"
+        ),
+    }
 }
 
-/// Returns how far the errors of undamped swings have added up, over the request.
-fn errors_add_up(swings: f64, requests: f64) -> String {
-    format!(
-        "about {swings:.0} swings are undamped, so that errors add up, to some {requests:.0} times the \
-         requested error relative to their amplitude; a smaller ERROR makes it less, and --accuracy \
-         shows how far off results are"
-    )
+/// Returns a number of two digits with its unit.
+fn amount_of(x: f64, unit: &str) -> String {
+    format!("{x:.1e} {unit}").trim_end().to_string()
 }
 
 /// Returns how small a motion is beside its model, and what that makes of its errors.

@@ -248,25 +248,15 @@ the steps of the method: large ones damp what swings, or drive it. The numbers a
     cognate run model.acf --error 1e-4  instead of 1e-1",
     },
     Code {
-        name: "phase_unsure",
-        summary: "errors of many swings may have added up to a part of a swing",
-        explanation: "\
-Nothing slows the motion down, so the error of each swing stays and adds to those before. How far and how often it swings is as good as
-ever; where it stands in the end is lost. The number of swings and the error of the energy account tell this; where the time of a swing
-does not depend on its width, as in a linear oscillator, the phase may be better than that. Bars of error (--accuracy) say how far off
-it is, and from when on the phase is lost.
-
-    cognate run model.acf --error 1e-10  instead of 1e-6",
-    },
-    Code {
         name: "errors_add_up",
-        summary: "errors of many undamped swings have added up to many times the request",
+        summary: "errors have added up to many times the request",
         explanation: "\
-ERROR is permitted in each step, in proportion to which a swing adds its error. Where nothing slows the motion down, the errors of all
-swings stay: a method of second order (HHT, NEWMARK) adds about one ERROR a swing, BDF up to half of one, DOP853 and RADAU5 a fortieth.
-The amplitude and the number of swings are better than that. Bars of error (--accuracy) say how far off results are.
+ERROR is permitted in each step. Where nothing slows the motion down, what each step or swing is off by stays and adds to those before,
+along an orbit even as the square of time; where a small push decides what happens, it grows. A further integration at another request
+has measured it: the column is off by about as much as the sentence says. Ask for a smaller ERROR; where a number is wanted that depends
+on such a motion, take one that does not: a mean, an amplitude, a number of turns.
 
-    cognate run model.acf --error 1e-6   instead of 1e-4
+    cognate run model.acf --error 1e-9   instead of 1e-6
     cognate run model.acf --method AUTO  instead of HHT",
     },
     Code {

@@ -1,0 +1,376 @@
+//! How far off the results of an integration are: measured by a second one at another request.
+//!
+//! The second one begins at the same state of the same system, at a larger request, so that it
+//! takes six tenths of the steps. Errors follow requests:
+//!
+//! ```text
+//! L = 2^(¾ p)                   request of the second one over that of the first, p: order
+//! e = s |y − y'| / L^0.85
+//! ```
+//!
+//! (in proportion it would be L − 1; measured on the references, with the factor s of bars of
+//! error, 99 of 100 channels hold.)
+//! That holds as long as both are near the same solution. Where they are not (an orbit whose phase
+//! is lost, a body that has bounced elsewhere), and where something else than the request sets the
+//! steps (HMAX, events), the second one has shorter steps instead, as that of `--accuracy` has.
+//!
+//! Both are compared at outputs, [`MOST`] at most. What the second one was off by at the end of a
+//! simulation stays with it in the next one: errors of a run add up over its simulations.
+
+use super::Session;
+use super::companion::Pace;
+use super::phase::Phase;
+use super::simulate::Span;
+use crate::analysis::accuracy::{
+    Comparison, LARGEST_REQUEST, LEAST_SIZE, Safety, companion_request, looser_request, safety,
+    shifts,
+};
+use crate::analysis::system::System;
+use crate::analysis::time::options::Options;
+use crate::analysis::trajectory::{Ended, Trajectory};
+use crate::analysis::warning::RunWarning;
+use crate::analysis::watch::Watch;
+use crate::expr::program::Program;
+use crate::numeric::Stats;
+use crate::results::{ChannelAccuracy, Column, Kind, Run, USUAL_SHARE};
+use crate::scalar::Scalar;
+use crate::scene::layout::State;
+use crate::scene::unknown::UnknownId;
+use std::collections::BTreeMap;
+
+/// Outputs at which two integrations are compared, at most.
+const MOST: usize = 512;
+/// Power of the request that errors follow at least.
+const FOLLOWS: f64 = 0.85;
+/// Difference of two integrations over the range of a channel up to which it tells the error of the
+/// better one.
+const NEAR: f64 = 0.1;
+/// Error over the request from which on it is told that errors have added up.
+const TOLD_REQUESTS: f64 = 50.0;
+/// The same over the largest value of a channel: less is not seen in a curve.
+const TOLD_OF_SIZE: f64 = 1e-3;
+
+/// What tables show at some outputs.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sampled {
+    /// the outputs that are wanted, in s, and how many of them have passed
+    wanted: Vec<f64>,
+    passed: usize,
+    /// those that are there
+    times: Vec<f64>,
+    /// the columns that tables show
+    columns: Vec<usize>,
+    /// their values, one list for each
+    values: Vec<Vec<f64>>,
+}
+
+impl Sampled {
+    /// Wants some of the outputs of a run, among them the last.
+    pub fn of(run: &Run, outputs: &[f64]) -> Self {
+        let every = outputs.len().div_ceil(MOST).max(1);
+        let mut wanted: Vec<f64> = (outputs.iter().rev().step_by(every)).copied().collect();
+        wanted.reverse();
+        let columns = run.table_columns().into_iter().filter(|&k| k > 0);
+        let columns: Vec<usize> = columns.collect();
+        Self {
+            wanted,
+            passed: 0,
+            times: Vec::new(),
+            values: vec![Vec::new(); columns.len()],
+            columns,
+        }
+    }
+
+    /// Takes what it wants of the last `n` rows that a run holds.
+    pub fn take(&mut self, run: &Run, n: usize) {
+        let n_held = run.held().len();
+        for place in n_held.saturating_sub(n)..n_held {
+            let t = run.value(0, place);
+            while self.wanted.get(self.passed).is_some_and(|w| *w < t) {
+                self.passed += 1;
+            }
+            if self.wanted.get(self.passed) != Some(&t) {
+                continue;
+            }
+            self.passed += 1;
+            self.times.push(t);
+            for (values, &column) in self.values.iter_mut().zip(&self.columns) {
+                values.push(run.value(column, place));
+            }
+        }
+    }
+}
+
+/// Where a further integration is at the end of a simulation, beside the run.
+#[derive(Clone, Debug)]
+pub(super) struct Beside(BTreeMap<UnknownId, f64>);
+
+impl Beside {
+    /// Notes what the states at the end of two integrations differ by.
+    fn between(system: &System, own: &[f64], other: &[f64]) -> Self {
+        let State { q, v, x } = &system.scene.unknowns;
+        let ids = q.iter().chain(v).chain(x).copied();
+        let places = system.scene.layout.states();
+        let differences = places.map(|k| other[k] - own[k]);
+        Self(ids.zip(differences).collect())
+    }
+
+    /// Moves the state of a system by these differences.
+    fn apply(&self, system: &mut System) {
+        let places = system.scene.layout.states();
+        let State { q, v, x } = &system.scene.unknowns;
+        let ids = q.iter().chain(v).chain(x);
+        for (number, id) in system.numbers[places].iter_mut().zip(ids) {
+            *number += self.0.get(id).copied().unwrap_or(0.0);
+        }
+    }
+}
+
+/// A simulation over time of which the error is measured.
+pub(super) struct Measured<'a> {
+    pub kind: Kind,
+    pub span: Span,
+    /// program of the columns at the beginning
+    pub program: &'a Program,
+    pub settings: &'a Options,
+    pub sampled: &'a Sampled,
+    pub trajectory: &'a Trajectory,
+}
+
+/// A further integration.
+struct Other {
+    request: f64,
+    sampled: Sampled,
+    /// times of its events, in s
+    events: Vec<f64>,
+    beside: Option<Beside>,
+}
+
+/// Asks whether to stop, and tells that it measures.
+struct Quiet<'a>(&'a mut dyn Watch);
+impl Watch for Quiet<'_> {
+    fn interrupted(&mut self) -> bool {
+        self.0.interrupted()
+    }
+    fn progress(&mut self, t: f64, _h: f64, stats: &Stats) {
+        self.0.measures(t, stats);
+    }
+}
+
+impl Session {
+    /// Returns whether the error of a simulation over time is to be measured: what motions alone
+    /// move is integrated by nothing.
+    pub(super) fn measures(&self, kind: Kind) -> bool {
+        self.options.measure && !self.options.accuracy && kind == Kind::Dynamic
+    }
+
+    /// Measures how far off a simulation is whose results are there, and notes it in the record;
+    /// `start`: the system as it was at the beginning.
+    pub(super) fn measure(
+        &mut self,
+        start: &System,
+        measured: &Measured<'_>,
+        watch: &mut dyn Watch,
+    ) {
+        let phase = Phase::begin();
+        let asked = measured.settings.error;
+        let before = self.beside.take();
+        let mut found = None;
+        for (request, pace) in self.paces_beside(measured.settings) {
+            let mut system = start.clone();
+            before.iter().for_each(|before| before.apply(&mut system));
+            let other = self.integrate_beside(system, measured, (request, pace), watch);
+            if watch.interrupted() {
+                break;
+            }
+            let near =
+                |other: &Other| request < asked || are_near(measured.sampled, &other.sampled);
+            found = other.filter(near);
+            if found.is_some() {
+                break;
+            }
+        }
+        match found {
+            Some(other) => {
+                self.note_measured(measured, &other);
+                self.beside = other.beside;
+            }
+            None if watch.interrupted() => {}
+            None => {
+                let (methods, many) = (self.last.methods(), self.last.has_many_events());
+                let request = companion_request(asked, methods, many);
+                self.warn(RunWarning::CompanionEnded { request });
+            }
+        }
+        let (own, translation) = phase.elapsed();
+        self.run.record.seconds.accuracy += own + translation;
+    }
+
+    /// Returns the requests at which to integrate once more, and how: the first that tells the
+    /// error is enough.
+    fn paces_beside(&self, settings: &Options) -> Vec<(f64, Pace)> {
+        let (asked, methods) = (settings.error, self.last.methods());
+        let larger = looser_request(asked, methods);
+        let follows = settings.h_max.is_infinite() && !self.last.has_steps_unasked();
+        let smaller = companion_request(asked, methods, self.last.has_many_events());
+        let mut all = Vec::new();
+        if follows && larger <= LARGEST_REQUEST {
+            all.push((larger, Pace::beside()));
+        }
+        all.push((smaller, Pace::shorter(&self.last)));
+        all
+    }
+
+    /// Integrates once more, at another request; `None`: it came to another end.
+    fn integrate_beside(
+        &mut self,
+        mut system: System,
+        measured: &Measured<'_>,
+        (request, pace): (f64, Pace),
+        watch: &mut dyn Watch,
+    ) -> Option<Other> {
+        let settings = &Options {
+            error: request,
+            h_initial: measured.settings.h_initial.map(|h| h * pace.steps),
+            h_max: pace.longest_step(measured.settings.h_max),
+            left: None,
+            ..measured.settings.clone()
+        };
+        // the results are left alone
+        let own = (
+            std::mem::take(&mut self.run),
+            std::mem::replace(&mut self.pace, pace),
+            std::mem::take(&mut self.gaps),
+            self.receiver.take(),
+            self.options.error.replace(request),
+        );
+        self.run.columns = own.0.columns.iter().map(Column::empty).collect();
+        self.run.table.clone_from(&own.0.table);
+        let span = measured.span;
+        let mut seen = self.begin_rows(measured.kind, measured.program, (&system, span.end));
+        let outputs = &measured.sampled.wanted;
+        let mut sampled = Sampled::of(&self.run, outputs);
+        let (mut other, _) = self.integrated(
+            (&mut system, None),
+            (span.start, outputs),
+            settings,
+            (&mut seen, &mut Quiet(watch), false),
+        );
+        let until = other.t.len();
+        self.see(&mut seen, &system, &mut other, until);
+        sampled.take(&self.run, until);
+        (
+            self.run,
+            self.pace,
+            self.gaps,
+            self.receiver,
+            self.options.error,
+        ) = own;
+        let is_sensor = |ended: &Option<Ended>| matches!(ended, Some(Ended::Sensor(_)));
+        // beside a run that has failed it is compared as far as that came
+        let failed = measured.trajectory.ended.is_some() && !is_sensor(&measured.trajectory.ended);
+        let alike = is_sensor(&other.ended) == is_sensor(&measured.trajectory.ended);
+        if !failed && !(alike && (other.ended.is_none() || is_sensor(&other.ended))) {
+            return None;
+        }
+        let ends = measured.trajectory.rows.last().zip(other.rows.last());
+        Some(Other {
+            request,
+            beside: ends.map(|(own, other)| Beside::between(&system, own, other)),
+            sampled,
+            events: other.event_times,
+        })
+    }
+
+    /// Notes in the record what the difference to a further integration says, and warns where that
+    /// is much.
+    fn note_measured(&mut self, measured: &Measured<'_>, other: &Other) {
+        let asked = measured.settings.error;
+        let of_method = safety(self.last.methods());
+        // the further integration is off by so many times the error of the run
+        let differs = Scalar::powf((other.request / asked).max(1.0), FOLLOWS);
+        let pairs = pairs(&measured.sampled.times, &other.sampled.times);
+        let times: Vec<f64> = pairs
+            .iter()
+            .map(|[k, _]| measured.sampled.times[*k])
+            .collect();
+        let partners: Vec<Option<usize>> = (0..times.len()).map(Some).collect();
+        let comparison = Comparison {
+            safety: Safety {
+                differences: of_method.differences / differs,
+                ..of_method
+            },
+            times: &times,
+            partners: &partners,
+            shifts: &shifts(self.last.events(), &other.events),
+        };
+        let accuracy = self.run.record.accuracy.get_or_insert_default();
+        accuracy.companions.push(other.request);
+        let sampled = measured.sampled;
+        let columns = sampled
+            .columns
+            .iter()
+            .filter_map(|&k| self.run.columns.get(k));
+        let columns: Vec<&Column> = columns.collect();
+        let largest = |values: &[f64]| {
+            let finite = values.iter().filter(|x| x.is_finite());
+            finite.fold(0.0, |m: f64, x| m.max(x.abs()))
+        };
+        let mut of_units: BTreeMap<&str, f64> = BTreeMap::new();
+        for (column, values) in columns.iter().zip(&sampled.values) {
+            let most = of_units.entry(&column.unit).or_default();
+            *most = most.max(largest(values));
+        }
+        let mut worst: Option<(f64, ChannelAccuracy)> = None;
+        let both = sampled.values.iter().zip(&other.sampled.values);
+        for (column, (own, others)) in columns.iter().zip(both) {
+            let of_unit = of_units.get(column.unit.as_str()).copied().unwrap_or(0.0);
+            let own: Vec<f64> = pairs.iter().map(|[k, _]| own[*k]).collect();
+            let others: Vec<f64> = pairs.iter().map(|[_, k]| others[*k]).collect();
+            let found = comparison.bars(&own, &others, of_unit);
+            let channel = accuracy.channel(&column.name, &column.unit);
+            let size = largest(&own).max(LEAST_SIZE * of_unit);
+            channel.see(&found.bars, size, found.lost_from);
+            let off = channel.usual / of_method.differences;
+            if channel.lost_from.is_some() || off > TOLD_OF_SIZE.max(TOLD_REQUESTS * asked) {
+                let is_worst = worst.as_ref().is_none_or(|(most, _)| off > *most);
+                worst = if is_worst {
+                    Some((off, channel.clone()))
+                } else {
+                    worst
+                };
+            }
+        }
+        if let Some((off, channel)) = worst {
+            self.warn(RunWarning::ErrorsAddUp {
+                channel,
+                requests: off / asked,
+            });
+        }
+    }
+}
+
+/// Returns whether two integrations are near the same solution: in most outputs of each channel
+/// they differ by a small part of its range.
+fn are_near(own: &Sampled, other: &Sampled) -> bool {
+    let pairs = pairs(&own.times, &other.times);
+    let near = |(own, other): (&Vec<f64>, &Vec<f64>)| {
+        let finite = own.iter().filter(|x| x.is_finite());
+        let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(*x), high.max(*x))
+        });
+        let rounding = f64::EPSILON.sqrt() * low.abs().max(high.abs());
+        let least = (NEAR * (high - low)).max(rounding);
+        let is_far = |[k, l]: &&[usize; 2]| (own[*k] - other[*l]).abs() > least;
+        let far = pairs.iter().filter(is_far).count();
+        far as f64 <= (1.0 - USUAL_SHARE) * pairs.len() as f64
+    };
+    own.values.iter().zip(&other.values).all(near)
+}
+
+/// Returns the places in two ascending lists of the times that both have.
+fn pairs(times: &[f64], others: &[f64]) -> Vec<[usize; 2]> {
+    let place = |t: &f64| others.binary_search_by(|other| other.total_cmp(t)).ok();
+    let all = times.iter().enumerate();
+    all.filter_map(|(k, t)| Some([k, place(t)?])).collect()
+}
