@@ -128,7 +128,9 @@ fn against_itself(text: &str, column: &str, end: f64, exponents: &[i32]) -> Said
         for exponent in exponents {
             let error = 10f64.powi(-exponent);
             let (s, status) = run(method, error);
-            if status == Status::Completed {
+            // beside one that came to no end nothing is measured, and that is told
+            let unknown = |w: &String| w.contains("ends otherwise");
+            if status == Status::Completed && !s.run.record.warned().iter().any(unknown) {
                 let lost = usual_error(running::values(&s, column), &exact);
                 found.take(
                     &s,
@@ -163,7 +165,7 @@ fn swings_that_excite_themselves_say_how_far_off_they_are() {
 /// A body round a mass: an error of its energy moves it along its orbit ever farther, as the square of time.
 #[test]
 fn orbits_say_how_far_off_they_are() {
-    let text = "PART/2, MASS=1, CM=2, IP=1,1,1, QG=1,0,0, VY=1.1\nMARKER/2, PART=2\nMARKER/1, PART=1\n\
+    let text = "PART/2, MASS=1, CM=2, IP=1,1,1, QG=1,0,0, VY=1.1\nMARKER/2, PART=2\n\
                 JPRIM/1, INPLANE, I=2, J=1\nJPRIM/2, ORIENTATION, I=2, J=1\n\
                 SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=-1/DM(2,1)**2\n";
     against_itself(text, "DX(2,1)", 60.0, &[3, 5, 8]).holds();
@@ -172,8 +174,7 @@ fn orbits_say_how_far_off_they_are() {
 /// A rotor that turns about the axis of the middle moment, and turns over again and again.
 #[test]
 fn rotors_that_turn_over_say_how_far_off_they_are() {
-    let text =
-        "PART/2, MASS=1, CM=2, IP=1,2,3, WX=1E-3, WY=2\nMARKER/2, PART=2\nMARKER/1, PART=1\n";
+    let text = "PART/2, MASS=1, CM=2, IP=1,2,3, WX=1E-3, WY=2\nMARKER/2, PART=2\n";
     against_itself(text, "WX(2,1,2)", 30.0, &[3, 5, 8]).holds();
 }
 

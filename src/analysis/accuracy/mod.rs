@@ -84,18 +84,22 @@ pub fn companion_request(error: f64, methods: &[String], has_many_events: bool) 
     }
 }
 
-/// Largest request of an integration that tells the error of another: beyond it errors follow
-/// requests no longer.
-pub const LARGEST_REQUEST: f64 = 1e-2;
+/// Largest request of an integration that tells the error of a better one: with few steps a swing
+/// errors follow requests no longer, they may even change their sign.
+const LARGEST_REQUEST: f64 = 1e-3;
 
 /// Returns the request of an integration that takes 2^(−¾) = 0.6 of the steps of a run by a
-/// method, or by several.
-pub fn looser_request(error: f64, methods: &[String]) -> f64 {
+/// method, or by several; `None` where that would be too large.
+pub fn looser_request(error: f64, methods: &[String]) -> Option<f64> {
     let worked = |name: &str| methods.iter().any(|n| n == name);
     let rows = METHODS.iter().filter(|m| worked(m.name));
     let order = rows.map(|m| m.order).min().unwrap_or(1);
-    error * Scalar::powf(2.0, 0.75 * order as f64)
+    let larger = error * Scalar::powf(2.0, 0.75 * order as f64);
+    Some(larger.min(LARGEST_REQUEST)).filter(|larger| *larger >= LEAST_LOOSER * error)
 }
+
+/// Least request of an integration that is to tell the error of a better one, over that one's.
+const LEAST_LOOSER: f64 = 2.0;
 
 /// Factors that make bars of what is known.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -22,8 +22,7 @@ use super::companion::Pace;
 use super::phase::Phase;
 use super::simulate::Span;
 use crate::analysis::accuracy::{
-    Comparison, LARGEST_REQUEST, LEAST_SIZE, Safety, companion_request, looser_request, safety,
-    shifts,
+    Comparison, LEAST_SIZE, Safety, companion_request, looser_request, safety, shifts,
 };
 use crate::analysis::system::System;
 use crate::analysis::time::options::Options;
@@ -210,11 +209,10 @@ impl Session {
     /// error is enough.
     fn paces_beside(&self, settings: &Options) -> Vec<(f64, Pace)> {
         let (asked, methods) = (settings.error, self.last.methods());
-        let larger = looser_request(asked, methods);
         let follows = settings.h_max.is_infinite() && !self.last.has_steps_unasked();
         let smaller = companion_request(asked, methods, self.last.has_many_events());
         let mut all = Vec::new();
-        if follows && larger <= LARGEST_REQUEST {
+        if let Some(larger) = looser_request(asked, methods).filter(|_| follows) {
             all.push((larger, Pace::beside()));
         }
         all.push((smaller, Pace::shorter(&self.last)));
