@@ -291,7 +291,10 @@ impl Program {
 
     /// Runs over any number, unchecked as [`Program::run`].
     pub fn eval<S: Scalar>(&self, inputs: &[S], work: &mut Work<S>, out: &mut [S]) {
-        let core = self.core();
+        let core = match S::CALLS_FUNCTIONS {
+            true => self.core(),
+            false => self.machine.core_without_calls(),
+        };
         let padded;
         let inputs = if inputs.len() < self.inputs.len() {
             padded = self.padded(inputs, S::constant(f64::NAN));
@@ -300,7 +303,7 @@ impl Program {
             inputs
         };
         if work.owner != self.id {
-            self.prepare(work);
+            self.prepare(core, work);
         }
         let registers = &mut work.registers[..];
         for (register, &k) in registers[core.constants.len()..].iter_mut().zip(&core.used) {
@@ -352,8 +355,7 @@ impl Program {
 
     /// Lays out the registers for this program.
     #[cold]
-    fn prepare<S: Scalar>(&self, work: &mut Work<S>) {
-        let core = self.core();
+    fn prepare<S: Scalar>(&self, core: &Core, work: &mut Work<S>) {
         // whatever happens here, these registers belong to nobody until they are complete
         work.owner = 0;
         work.registers.clear();

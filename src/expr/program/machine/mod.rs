@@ -33,6 +33,7 @@ mod prepared;
 mod steps;
 
 use super::code::Core;
+use super::expand::Expand;
 use crate::clock::Moment;
 pub(super) use alike::{Alike, KindOfCode};
 pub(super) use lower::written_out;
@@ -82,6 +83,8 @@ pub enum Engine {
 /// Straight code as steps and as code of the processor.
 pub(super) struct Machine {
     core: Arc<Core>,
+    /// the same without calls, where it has any; made when it is first needed
+    without_calls: OnceLock<Option<Core>>,
     made: Arc<Made>,
     /// components that are run one by one in place of the whole
     alike: Option<Arc<Alike>>,
@@ -109,8 +112,12 @@ impl std::fmt::Debug for Machine {
 
 impl Machine {
     pub(super) fn new(core: Arc<Core>) -> Self {
-        let (made, alike) = (Arc::default(), None);
-        Self { core, made, alike }
+        Self {
+            core,
+            without_calls: OnceLock::new(),
+            made: Arc::default(),
+            alike: None,
+        }
     }
 
     /// Returns the machine of a core that goes through its components.
@@ -144,6 +151,14 @@ impl Machine {
 
     pub(super) fn core(&self) -> &Arc<Core> {
         &self.core
+    }
+
+    /// Returns the core with calls and their partial derivatives as operations.
+    pub(super) fn core_without_calls(&self) -> &Core {
+        let made = self
+            .without_calls
+            .get_or_init(|| self.core.expanded(Expand::Calls));
+        made.as_ref().unwrap_or(&self.core)
     }
 
     /// Returns the same machine with one engine from the first run on; `None` where that is not to
