@@ -12,6 +12,7 @@ pub(crate) trait Arrange<T> {
     fn arrange_by(&mut self, compare: impl FnMut(&T, &T) -> Ordering);
 
     /// Sorts as [`slice::sort`].
+    #[cfg(feature = "solver")]
     fn arrange(&mut self)
     where
         T: Ord,
@@ -73,9 +74,6 @@ mod tests {
             assert_eq!(got, want);
             want.sort_by(|a, b| b.cmp(a));
             got.arrange_by(|a, b| b.cmp(a));
-            assert_eq!(got, want);
-            want.sort();
-            got.arrange();
             assert_eq!(got, want);
         }
     }

@@ -15,7 +15,6 @@ pub use count::counted;
 pub use error::Error;
 pub use subject::Subject;
 
-use crate::arrange::Arrange;
 use std::cmp::Reverse;
 use std::fmt;
 
@@ -198,7 +197,7 @@ fn near_words<'a>(name: &str, known: &mut dyn Iterator<Item = &'a str>) -> Vec<&
                 .then_some((d, alike, k))
         })
         .collect();
-    found.arrange();
+    found.sort();
     found.dedup_by_key(|f| f.2);
     found.truncate(3);
     found.into_iter().map(|f| f.2).collect()

@@ -109,9 +109,9 @@ pub trait Scalar:
     /// The result of a comparison.
     type Mask: Mask;
 
-    /// Whether programs call the functions of the table over this number as they are. Over all
-    /// others they run the operations that these consist of: each number that has the table costs
-    /// a copy of it, and one over duals.
+    /// Tells whether programs call the functions of the table over this number as they are. Over
+    /// others they run the operations that these consist of: each number that has the table costs a
+    /// copy of it, and one over duals.
     const CALLS_FUNCTIONS: bool = false;
 
     /// Creates a number that depends on nothing.

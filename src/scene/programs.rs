@@ -100,7 +100,7 @@ where
     )
 }
 
-/// What is recorded, over the symbols of any recorder.
+/// A computation that is recorded, over the symbols of any recorder.
 type Recorded<'f> = dyn for<'b> FnMut(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>> + 'f;
 
 /// As [`recorded`]; compiled once.

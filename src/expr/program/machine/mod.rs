@@ -33,7 +33,6 @@ mod prepared;
 mod steps;
 
 use super::code::Core;
-use super::expand::Expand;
 use crate::clock::Moment;
 pub(super) use alike::{Alike, KindOfCode};
 pub(super) use lower::written_out;
@@ -153,11 +152,10 @@ impl Machine {
         &self.core
     }
 
-    /// Returns the core with calls and their partial derivatives as operations.
-    pub(super) fn core_without_calls(&self) -> &Core {
-        let made = self
-            .without_calls
-            .get_or_init(|| self.core.expanded(Expand::Calls));
+    /// Returns the core with calls and their partial derivatives as operations, which `expanded`
+    /// makes of one that has any.
+    pub(super) fn core_without_calls(&self, expanded: impl FnOnce(&Core) -> Option<Core>) -> &Core {
+        let made = self.without_calls.get_or_init(|| expanded(&self.core));
         made.as_ref().unwrap_or(&self.core)
     }
 
