@@ -103,6 +103,9 @@ where
 /// A computation that is recorded, over the symbols of any recorder.
 type Recorded<'f> = dyn for<'b> FnMut(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>> + 'f;
 
+/// An end of a recording, which makes lists of the values.
+type End<'f> = dyn FnMut(&mut Builder, Vec<Value>) -> Vec<Vec<Value>> + 'f;
+
 /// As [`recorded`]; compiled once.
 fn recorded_by(
     scene: Configured<'_>,
@@ -110,7 +113,7 @@ fn recorded_by(
     known: bool,
     moving: bool,
     f: &mut Recorded<'_>,
-    end: &mut dyn FnMut(&mut Builder, Vec<Value>) -> Vec<Vec<Value>>,
+    end: &mut End<'_>,
 ) -> (Vec<Program>, Vec<Unsupported>) {
     let builder = RefCell::new(Builder::again_or_new(Folding::Structural));
     let row = LongRow {
