@@ -267,6 +267,7 @@
 struct Readme;
 
 // floor 0
+mod arrange;
 pub mod clock;
 pub mod diagnostic;
 #[cfg(feature = "solver")]

@@ -27,6 +27,7 @@ pub mod syntax;
 pub mod value;
 pub mod write;
 
+use crate::arrange::Arrange;
 use crate::diagnostic::{Cause, Diagnostic, Error, Severity, Span};
 use crate::disk;
 use crate::model::{ElementKind, MarkerOwner, Model};
@@ -212,7 +213,7 @@ pub fn read_source(source: Source) -> Reading {
     out.extend(without_effect.told(&source));
     name_elements(&records, out);
     // what is missing as a whole follows from mistakes that have a place
-    out.sort_by_key(|d| (d.line == 0, d.line, d.column));
+    out.arrange_by_key(|d| (d.line == 0, d.line, d.column));
     reading.dataset = Dataset {
         source,
         syntax,

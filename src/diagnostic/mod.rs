@@ -173,11 +173,14 @@ impl std::error::Error for Diagnostic {}
 /// Close means an edit distance (with transpositions) of at most a third of the length, a common
 /// beginning, or a fifth of the length from an abbreviation (`ROTATON` of `ROTATIONAL`).
 pub fn near_names<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+    near_words(name, &mut known.into_iter())
+}
+
+fn near_words<'a>(name: &str, known: &mut dyn Iterator<Item = &'a str>) -> Vec<&'a str> {
     let name = beginning(name, MOST_COMPARED).to_ascii_uppercase();
     let n = name.chars().count();
     let (limit, limit_abbreviated) = ((name.len() / 3).max(1), name.len() / 5);
     let mut found: Vec<(usize, Reverse<usize>, &str)> = known
-        .into_iter()
         .filter_map(|k| {
             let upper = beginning(k, MOST_COMPARED).to_ascii_uppercase();
             let distance_to = |m| strsim::osa_distance(&name, beginning(&upper, m));

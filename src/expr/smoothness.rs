@@ -15,6 +15,7 @@ use super::Expr;
 use super::functions::Continuity;
 use super::interpolation::Bindings;
 use super::program::{Break, Builder, Folding, Input, Levels, Program, Value, Work};
+use crate::arrange::Arrange;
 use crate::diagnostic::Error;
 use crate::scalar::{Germ, Interval, ORDERS, Scalar};
 use std::fmt;
@@ -264,7 +265,7 @@ fn without_touches(breakpoints: &mut Vec<Breakpoint>) {
         let cancel = (before - after).abs() <= TOUCH_TOLERANCE * before.abs();
         if group.len() >= 2 && !cancel && group[0].order > 0 {
             // one kink, which rounding hides; the shortest digits are the likelier ones
-            group.sort_by_key(|b| b.at.to_string().len());
+            group.arrange_by_key(|b| b.at.to_string().len());
             group.truncate(1);
         }
         if group.len() < 2 || !cancel {

@@ -6,6 +6,7 @@ use super::functions::Function;
 use super::interpolation::Interpolation;
 use super::measures;
 use super::signature::{self, Argument, Kind};
+use crate::arrange::Arrange;
 use std::cmp::Ordering;
 use std::sync::OnceLock;
 
@@ -82,7 +83,7 @@ fn table(dialect: Dialect) -> &'static Table {
                 );
             }
         }
-        table.sort_by(|a, b| compare(a.0, b.0));
+        table.arrange_by(|a, b| compare(a.0, b.0));
         table
     })
 }

@@ -11,6 +11,7 @@
 //!
 //! Source: George & Liu, Computer Solution of Large Sparse Positive Definite Systems, 4.
 
+use crate::arrange::Arrange;
 use nalgebra::DMatrix;
 use std::collections::VecDeque;
 
@@ -147,7 +148,7 @@ fn spread(start: usize, neighbours: &[Vec<usize>], seen: &mut [bool]) -> Vec<usi
         let mut next: Vec<usize> = (neighbours[i].iter().copied())
             .filter(|&j| !std::mem::replace(&mut seen[j], true))
             .collect();
-        next.sort_by_key(|&j| neighbours[j].len());
+        next.arrange_by_key(|&j| neighbours[j].len());
         queue.extend(next);
     }
     all

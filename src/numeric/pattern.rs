@@ -10,6 +10,8 @@
 //!
 //! Source: Curtis, Powell & Reid, J. Inst. Math. Appl. 13 (1974).
 
+use crate::arrange::Arrange;
+
 /// The places of the entries of a matrix, by columns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pattern {
@@ -45,7 +47,7 @@ impl Pattern {
             }
         }
         let mut order: Vec<usize> = (0..columns.len()).collect();
-        order.sort_by_key(|&j| std::cmp::Reverse(columns[j].len()));
+        order.arrange_by_key(|&j| std::cmp::Reverse(columns[j].len()));
         let mut groups: Vec<Vec<usize>> = Vec::new();
         let mut group_of = vec![usize::MAX; columns.len()];
         // for each group, the last column that found it taken

@@ -28,6 +28,7 @@
 #![allow(clippy::needless_range_loop)] // several arrays at one index read best that way
 
 use super::dense::Lu;
+use crate::arrange::Arrange;
 use std::collections::BTreeSet;
 
 /// Number of unknowns up to which dense factors are faster, unless half of the matrix is empty.
@@ -373,7 +374,7 @@ impl Markowitz {
             .zip(values)
             .map(|((i, j), v)| (*j, *i, v * scale[*i as usize]))
             .collect();
-        sorted.sort_by_key(|(j, i, _)| (*j, *i));
+        sorted.arrange_by_key(|(j, i, _)| (*j, *i));
         for (j, i, v) in sorted {
             match columns[j as usize].last_mut() {
                 Some((last, sum)) if *last == i => *sum += v,

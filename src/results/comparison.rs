@@ -2,6 +2,7 @@
 //! beside the channel's range and its bars of error.
 
 use super::{Kind, Run};
+use crate::arrange::Arrange;
 use crate::diagnostic::Diagnostic;
 
 /// Difference of two times that are the same, as a part of the span of the runs: times are printed
@@ -127,7 +128,7 @@ pub fn compare(a: &Run, b: &Run, interpolate: bool) -> Result<Comparison, Diagno
     found.alone[1] = only.filter(|n| a.find(n).is_none()).cloned().collect();
     found
         .channels
-        .sort_by(|x, y| y.relative().total_cmp(&x.relative()));
+        .arrange_by(|x, y| y.relative().total_cmp(&x.relative()));
     Ok(found)
 }
 

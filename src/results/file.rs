@@ -3,6 +3,7 @@
 use super::format::{Finished, Format, Reader, Style};
 use super::part_file::{PartFile, create_beside, unwritable};
 use super::{Run, msg};
+use crate::arrange::Arrange;
 use crate::diagnostic::Diagnostic;
 use crate::disk;
 use crate::encoding::as_utf8;
@@ -82,7 +83,7 @@ fn read_parts(folder: &Path, extension: &str, reader: Reader) -> Result<Run, Dia
     let entries = entries.map(|entry| entry.map(|e| e.path()));
     let mut parts = entries.collect::<Result<Vec<_>, _>>().map_err(unreadable)?;
     parts.retain(|part| self::extension(part) == extension);
-    parts.sort();
+    parts.arrange();
     let mut whole: Option<Run> = None;
     for part in parts {
         let run = reader(&contents(&part)?)?;

@@ -8,6 +8,7 @@ use super::output_folder::{BEING_WRITTEN, listed};
 use super::part_file::unwritable;
 use super::write_text;
 use super::writing::is_kept;
+use crate::arrange::Arrange;
 use crate::diagnostic::{Diagnostic, near_names};
 use crate::disk;
 use serde_json::Value;
@@ -67,7 +68,7 @@ pub fn runs_in(folder: &Path) -> Result<Vec<KeptRun>, Diagnostic> {
         // a folder that may not be read has nothing to list
         found.extend(records_in(&folder.join(entry.file_name())).unwrap_or_default());
     }
-    found.sort_by(|a, b| (&a.folder, &a.name).cmp(&(&b.folder, &b.name)));
+    found.arrange_by(|a, b| (&a.folder, &a.name).cmp(&(&b.folder, &b.name)));
     Ok(found)
 }
 
@@ -211,7 +212,7 @@ impl KeptRun {
             .filter(|path| is_part(path))
             .map(|path| (path.clone(), bytes(&path)))
             .collect();
-        all.sort();
+        all.arrange();
         all
     }
 

@@ -109,6 +109,11 @@ pub trait Scalar:
     /// The result of a comparison.
     type Mask: Mask;
 
+    /// Tells whether programs call the functions of the table over this number as they are. Over
+    /// others they run the operations that these consist of: each number that has the table costs a
+    /// copy of it, and one over duals.
+    const CALLS_FUNCTIONS: bool = false;
+
     /// Creates a number that depends on nothing.
     fn constant(x: f64) -> Self;
     /// Returns zero.
@@ -239,6 +244,7 @@ pub trait Scalar:
 
 impl Scalar for f64 {
     type Mask = bool;
+    const CALLS_FUNCTIONS: bool = true;
 
     #[inline(always)]
     fn constant(x: f64) -> f64 {

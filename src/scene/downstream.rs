@@ -20,6 +20,7 @@ use super::external_inputs::{ExternalInput, HookKind};
 use super::forces::ForceLaw;
 use super::loops::Key;
 use super::{Entry, Formula, Scene};
+use crate::arrange::Arrange;
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder as Recorder, Folding, Input};
 use crate::model::ElementKind;
@@ -243,7 +244,7 @@ impl Builder<'_> {
     /// Gives the states in question the last places of x; the order stays otherwise.
     fn move_to_the_end(&mut self, moved: &[bool]) {
         let mut order: Vec<usize> = (0..moved.len()).collect();
-        order.sort_by_key(|&place| moved[place]);
+        order.arrange_by_key(|&place| moved[place]);
         let mut place_of = vec![0; moved.len()];
         for (place, &before) in order.iter().enumerate() {
             place_of[before] = place;

@@ -2,6 +2,7 @@
 
 use super::layout::{replace, several};
 use super::{LinkMotion, Scene, Source};
+use crate::arrange::Arrange;
 use crate::space::Vec3;
 use crate::space::rotation::quaternion_rate;
 
@@ -75,7 +76,7 @@ impl Mover {
                 );
             }
         }
-        all.sort_by_key(|t| t.0);
+        all.arrange_by_key(|t| t.0);
         all
     }
 

@@ -8,6 +8,7 @@ use super::layout::{Layout, LongRow};
 use super::loops;
 use super::recorder::Recorder;
 use super::solve::{SymmetricFactor, gram};
+use crate::arrange::Arrange;
 use crate::expr::program::{Builder, Folding, Input, Levels, Program, Sym, Value};
 use crate::model::ElementId;
 use crate::scalar::Scalar;
@@ -82,6 +83,38 @@ where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>>,
     E: FnOnce(&mut Builder, Vec<Value>) -> Vec<Vec<Value>>,
 {
+    let (mut f, mut end) = (Some(f), Some(end));
+    recorded_by(
+        scene,
+        n_more,
+        known,
+        moving,
+        &mut |equations, more| match f.take() {
+            Some(f) => f(equations, more),
+            None => unreachable!("what is recorded is computed once"),
+        },
+        &mut |builder, values| match end.take() {
+            Some(end) => end(builder, values),
+            None => unreachable!("what is recorded ends once"),
+        },
+    )
+}
+
+/// A computation that is recorded, over the symbols of any recorder.
+type Recorded<'f> = dyn for<'b> FnMut(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>> + 'f;
+
+/// An end of a recording, which makes lists of the values.
+type End<'f> = dyn FnMut(&mut Builder, Vec<Value>) -> Vec<Vec<Value>> + 'f;
+
+/// As [`recorded`]; compiled once.
+fn recorded_by(
+    scene: Configured<'_>,
+    n_more: usize,
+    known: bool,
+    moving: bool,
+    f: &mut Recorded<'_>,
+    end: &mut End<'_>,
+) -> (Vec<Program>, Vec<Unsupported>) {
     let builder = RefCell::new(Builder::again_or_new(Folding::Structural));
     let row = LongRow {
         numbers: scene.layout,
@@ -148,7 +181,7 @@ pub fn costs(scene: Configured<'_>) -> Vec<(ElementId, usize)> {
         });
     }
     let mut costs: Vec<(ElementId, usize)> = costs.into_iter().collect();
-    costs.sort_by_key(|cost| std::cmp::Reverse(cost.1));
+    costs.arrange_by_key(|cost| std::cmp::Reverse(cost.1));
     costs
 }
 

@@ -6,6 +6,7 @@
 use super::modes::{eigenvalues, is_rounding};
 use super::{Small, directions, slopes, state_rows};
 use crate::analysis::system::System;
+use crate::arrange::Arrange;
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 
 /// Part of |λ| below which a real part counts as none: a push that grows to e times its size in
@@ -34,7 +35,7 @@ pub(in crate::analysis) fn growth(system: &mut System) -> Option<Option<Growth>>
     balance_parlett_reinsch(&mut balanced);
     let mut values = eigenvalues(&balanced)?;
     values.retain(|v| v.im >= 0.0 && v.re > LEAST_GROWTH * v.norm());
-    values.sort_by(|a, b| b.re.total_cmp(&a.re));
+    values.arrange_by(|a, b| b.re.total_cmp(&a.re));
     let grows = values
         .into_iter()
         .find(|&v| !is_rounding(&balanced, v, v.re));

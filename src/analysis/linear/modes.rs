@@ -16,6 +16,7 @@
 
 use super::{Mode, PartShape, Small, Wanted};
 use crate::analysis::system::System;
+use crate::arrange::Arrange;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::scalar::Scalar;
@@ -71,7 +72,7 @@ pub(super) fn modes(
         }
     }
     values.retain(|v| v.im >= 0.0);
-    values.sort_by(|x, y| x.norm().total_cmp(&y.norm()).then(x.re.total_cmp(&y.re)));
+    values.arrange_by(|x, y| x.norm().total_cmp(&y.norm()).then(x.re.total_cmp(&y.re)));
     let [first, last] = wanted.shapes.unwrap_or([1, usize::MAX]);
     let motion = PartMotion::of(system, model, small);
     let names = system.scene.unknown_names();

@@ -11,6 +11,7 @@ use crate::analysis::time::{ranks, valueless};
 use crate::analysis::trajectory::{Ended, EnergyFlow, Limited, Trajectory};
 use crate::analysis::verify::culprit;
 use crate::analysis::warning::{RunWarning, Warning};
+use crate::arrange::Arrange;
 use crate::diagnostic::Subject;
 use crate::model::Model;
 use crate::numeric::{Reason, Stop};
@@ -98,7 +99,7 @@ impl Session {
                 unit: scene.length_unit.clone(),
             });
         }
-        told.sort_by(|a, b| a.time.total_cmp(&b.time));
+        told.arrange_by(|a, b| a.time.total_cmp(&b.time));
         for change in told.iter().take(20) {
             self.warn(RunWarning::Rank(change.clone()));
         }

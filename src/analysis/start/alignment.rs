@@ -31,6 +31,7 @@ use crate::analysis::quantity::amount;
 use crate::analysis::start::assemble::{self, CLOSED, DEPENDENT, Redundant};
 use crate::analysis::start::nearby::Surroundings;
 use crate::analysis::warning::AssemblyWarning;
+use crate::arrange::Arrange;
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::ElementKind;
 use crate::numeric::connected::{Block, SparseRow, connected};
@@ -195,7 +196,7 @@ pub(super) fn explain(
                 (order[k], f * scale)
             })
             .collect();
-        combination.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
+        combination.arrange_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
         one.combination = combination;
     }
 }
@@ -364,7 +365,7 @@ impl<'s> Search<'s> {
     fn candidates(&self, block: &Block) -> Vec<usize> {
         let rows = block.rows.iter().copied();
         let mut rows: Vec<usize> = rows.filter(|&r| self.geometric[r]).collect();
-        rows.sort_by_key(|&r| (!is_length(self.scene, r), r));
+        rows.arrange_by_key(|&r| (!is_length(self.scene, r), r));
         rows
     }
 
@@ -571,7 +572,7 @@ impl<'s> Search<'s> {
         let scene = self.scene.within(configuration);
         let numbers = assemble::numbers(scene, self.t, q, &vec![0.0; self.unit.len()], self.x);
         let at = Equations::new(scene, &numbers);
-        found.sort_by(|a, b| b.off.total_cmp(&a.off).then(a.row.cmp(&b.row)));
+        found.arrange_by(|a, b| b.off.total_cmp(&a.off).then(a.row.cmp(&b.row)));
         let mut named = Vec::new();
         let mut errors = Vec::new();
         for m in found {
@@ -617,7 +618,7 @@ impl<'s> Search<'s> {
                 limit: self.scene.alignment * self.one[m.row],
             }));
         }
-        found.sort_by_key(|l| l.row);
+        found.arrange_by_key(|l| l.row);
         found
     }
 }

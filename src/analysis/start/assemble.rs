@@ -9,6 +9,7 @@ use crate::analysis::look::Look;
 use crate::analysis::quantity::{length, short};
 use crate::analysis::start::{alignment, branch, nearby, placement};
 use crate::analysis::warning::{AssemblyWarning, Warning};
+use crate::arrange::Arrange;
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::numeric::connected::{Block, SparseRow, connected};
 use crate::numeric::rank::Rank;
@@ -501,7 +502,7 @@ fn contradictions(scene: Configured<'_>, g: &DVector<f64>, numbers: &[f64]) -> V
     let mut bad: Vec<usize> = (0..g.len())
         .filter(|&r| relative(&scene, r, g[r]) > CLOSED || !g[r].is_finite())
         .collect();
-    bad.sort_by(|&a, &b| relative(&scene, b, g[b]).total_cmp(&relative(&scene, a, g[a])));
+    bad.arrange_by(|&a, &b| relative(&scene, b, g[b]).total_cmp(&relative(&scene, a, g[a])));
     // beside the worst, what rounding leaves open is no contradiction
     let worst = bad.first().map_or(0.0, |&r| relative(&scene, r, g[r]));
     bad.retain(|&r| {
@@ -585,7 +586,7 @@ pub(super) fn rank_of_rows<E>(
     let longest = w.iter().map(|w| w.sqrt()).fold(0.0, f64::max);
     let (mut independent, mut redundant) = (Vec::new(), Vec::new());
     for mut part in parts(gradient, w.len()) {
-        part.rows.sort_by_key(order);
+        part.rows.arrange_by_key(order);
         let mut rows = scaled_part(&part, gradient, w);
         for (row, &r) in rows.iter_mut().zip(&part.rows) {
             // a row that moves nothing there says nothing about what its direction is
@@ -604,7 +605,7 @@ pub(super) fn rank_of_rows<E>(
                 .map(|(k, f)| (part.rows[k], f))
                 .filter(|c| c.1.abs() > 1e-6)
                 .collect();
-            combination.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
+            combination.arrange_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
             let row = part.rows[d.row];
             let name = row_name(&scene.rows[row]);
             Redundant {
@@ -615,7 +616,7 @@ pub(super) fn rank_of_rows<E>(
         }));
     }
     independent.sort_unstable();
-    redundant.sort_by_key(|d: &Redundant| order(&d.row));
+    redundant.arrange_by_key(|d: &Redundant| order(&d.row));
     Ok((independent, redundant))
 }
 

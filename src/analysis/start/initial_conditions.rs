@@ -16,6 +16,7 @@
 
 use crate::analysis::start::assemble::{self, least_change, rows_at_rest};
 use crate::analysis::warning::ConditionWarning;
+use crate::arrange::Arrange;
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
 use crate::model::{ElementId, ElementKind, InitialQuantity, Model};
@@ -353,7 +354,7 @@ pub fn approach(
         }
         for (_, slopes) in &places {
             let mut slopes = slopes.clone();
-            slopes.sort_by_key(|e| e.0);
+            slopes.arrange_by_key(|e| e.0);
             a.push(assemble::merged(slopes));
         }
         let all = g

@@ -4,6 +4,7 @@
 use crate::analysis::direction::Axis;
 use crate::analysis::start::{branch, placement};
 use crate::analysis::warning::{AssemblyWarning, ConditionWarning};
+use crate::arrange::Arrange;
 use crate::model::check::alignment::{self, Needed};
 use crate::model::check::angles;
 use crate::model::{ElementId, ElementKind, Model};
@@ -182,7 +183,7 @@ pub fn turned(
             parts.push((part.id, angle));
         }
     }
-    parts.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    parts.arrange_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
     // what lines ask for and do not get is told by itself
     let mut lines = model.beginnings.values().flat_map(|values| values.keys());
     let is_asked = joints && lines.any(|quantity| !quantity.is_rate());

@@ -26,6 +26,7 @@ use crate::analysis::session::{Analysis, Options, Session};
 use crate::analysis::stack;
 use crate::analysis::system::closures::{Call, Hook};
 use crate::analysis::watch::Watch;
+use crate::arrange::Arrange;
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::diagnostic::{Diagnostic, Error, counted};
 use crate::model::{ElementKind, Model};
@@ -249,7 +250,7 @@ impl Sweep {
             rows.push(row);
             Ok(())
         })?;
-        rows.sort_by_key(|row| row.run);
+        rows.arrange_by_key(|row| row.run);
         Ok(rows)
     }
 

@@ -10,6 +10,7 @@
 //! gone on with, and rows of another model are not.
 
 use super::{Parameter, Row, Sweep};
+use crate::arrange::Arrange;
 use crate::diagnostic::{Cause, Diagnostic, Error};
 use crate::disk;
 use crate::disk::{File, OpenOptions};
@@ -129,7 +130,7 @@ impl Table {
     /// # Errors
     /// When the file cannot be written.
     pub fn complete(&mut self) -> Result<(), Error> {
-        self.rows.sort_by_key(|row| row.run);
+        self.rows.arrange_by_key(|row| row.run);
         let text = written(&self.names, &self.units, &self.rows);
         Ok(write_text(&self.path, &text)?)
     }

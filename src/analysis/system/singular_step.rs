@@ -7,6 +7,8 @@
 //! well span the instant: if it falls into the widest gap between the evaluations of the method,
 //! none of them is near.
 
+use crate::arrange::Arrange;
+
 /// The distances of rows from dependence at the evaluations of a step.
 #[derive(Clone, Debug, Default)]
 pub struct SingularSteps {
@@ -86,7 +88,7 @@ impl SingularSteps {
     fn look_between(&mut self, t: f64) {
         let seen = &mut self.approach;
         seen.retain(|s| s.0 >= t);
-        seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+        seen.arrange_by(|a, b| a.0.total_cmp(&b.0));
         seen.dedup_by(|a, b| a.0 == b.0);
         let vanishes = |from: (f64, f64), at: (f64, f64), until: f64| {
             let slope = (at.1 - from.1) / (at.0 - from.0);
@@ -116,7 +118,7 @@ impl SingularSteps {
         if !seen.iter().any(|s| s.0 > t && s.1 * s.1 < harmful) {
             return None;
         }
-        seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+        seen.arrange_by(|a, b| a.0.total_cmp(&b.0));
         seen.dedup_by(|a, b| a.0 - b.0 < 1e-9 * h);
         let (middle, half) = (0.5 * (gap[0] + gap[1]), 0.5 * (gap[1] - gap[0]));
         let part = (instant(&seen)? - t) / h;

@@ -9,6 +9,7 @@ use super::{leave_out_unknown, skeleton, stand_still, start};
 use crate::analysis::start::dataset::Dataset;
 use crate::analysis::start::{assemble, misalignment, velocities};
 use crate::analysis::warning::AssemblyWarning;
+use crate::arrange::Arrange;
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::{ElementId, ElementKind, Family, Model};
 use crate::scene::Scene;
@@ -57,7 +58,7 @@ pub(super) fn traced(model: &Model, said: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let locked = fits.then(|| locked_without_motions(model)).flatten();
     let blames_motions = fits && locked.is_none();
     let drives = |s: &Suspect| blames_motions && s.id.kind == ElementKind::Motion;
-    suspects.sort_by(|a, b| {
+    suspects.arrange_by(|a, b| {
         let first = |s: &Suspect| (s.apart.is_none(), !drives(s));
         // rounding decides nothing
         let moved = |s: &Suspect| (1e6 * s.moved).round();

@@ -6,6 +6,7 @@
 use crate::analysis::direction::Axis;
 use crate::analysis::quantity::point;
 use crate::analysis::start::assemble;
+use crate::arrange::Arrange;
 use crate::diagnostic::Subject;
 use crate::model::{ElementId, Model};
 use crate::numeric::rank::Rank;
@@ -159,7 +160,7 @@ fn moving_parts(scene: &Scene, first: usize, moving: Vec<Placed>, still: &[Place
         parts.push((k, p, state, angular, linear, size));
     }
     parts.retain(|part| part.5 > LEAST_MOTION * largest);
-    parts.sort_by_key(|part| (scene.parts[part.0].link != Some(first), part.0));
+    parts.arrange_by_key(|part| (scene.parts[part.0].link != Some(first), part.0));
     parts
         .into_iter()
         .map(|(k, p, state, angular, linear, _)| Moving {

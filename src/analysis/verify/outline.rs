@@ -8,6 +8,7 @@ use crate::analysis::verify::culprit::blamed;
 use crate::analysis::verify::idle::{Idle, idle};
 use crate::analysis::verify::{stand_still, start};
 use crate::analysis::warning::{AssemblyWarning, Warning};
+use crate::arrange::Arrange;
 use crate::diagnostic::Error;
 use crate::model::{ElementId, ElementKind, Family, Formula, Model};
 use crate::scene::build::Options;
@@ -179,7 +180,7 @@ fn inputs(model: &Model) -> Vec<String> {
 /// Returns the carrier of each part, in the order of the links.
 fn forest(scene: &Scene, out: &mut Outline) {
     let mut order: Vec<usize> = (0..scene.parts.len()).collect();
-    order.sort_by_key(|&k| scene.parts[k].link);
+    order.arrange_by_key(|&k| scene.parts[k].link);
     for k in order {
         let part = &scene.parts[k];
         let name = part.id.to_string();

@@ -3,6 +3,7 @@
 use super::attempt::{Attempt, attempt};
 use super::distance::{self, Candidate, Table};
 use super::{Cost, Error, Follow, LeftOut, Outcome, Question, Reason, Reference, Row, Study};
+use crate::arrange::Arrange;
 use crate::diagnostic;
 use crate::numeric::METHODS;
 use crate::results::Status;
@@ -202,7 +203,7 @@ impl Survey<'_> {
     fn study(mut self) -> Study {
         let order = |method: &str| self.series.iter().position(|s| s.method == method);
         let key = |done: &Done| (order(&done.method), -done.request);
-        self.done.sort_by(|a, b| {
+        self.done.arrange_by(|a, b| {
             let (a, b) = (key(a), key(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         });

@@ -20,6 +20,7 @@ use super::statement::STATEMENTS;
 use super::syntax::{self, Item, Source, Syntax};
 use super::value::Kind;
 use super::{enter, load};
+use crate::arrange::Arrange;
 use crate::diagnostic::{Diagnostic, Error, Severity, Span};
 use crate::disk;
 use crate::model::{ElementKind, Model, SettingsStatement};
@@ -359,7 +360,7 @@ fn end_of_stop(text: &str) -> Option<usize> {
 }
 
 fn finish(mut script: Script, mut out: Vec<Diagnostic>) -> Result<Script, Error> {
-    out.sort_by_key(|d| (d.line, d.column));
+    out.arrange_by_key(|d| (d.line, d.column));
     if out.iter().any(|d| d.severity == Severity::Error) {
         out.retain(|d| d.severity == Severity::Error);
         return Err(out.into());

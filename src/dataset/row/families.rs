@@ -129,7 +129,7 @@ impl<T: Element> Statement for Numbered<T> {
         let mut problems = apply(self.bindings, &mut element, record);
         if !change {
             if !record.mistaken {
-                problems.extend(incomplete(self.bindings, record));
+                problems.extend(incomplete(self, record));
             }
             if let Some(place) = element.place_mut() {
                 let extra = std::mem::take(&mut place.extra);
@@ -354,26 +354,26 @@ pub fn filled<T: Default>(bindings: &'static [Binding<T>], record: &Record) -> T
 }
 
 /// Returns the required arguments that a new element misses.
-fn incomplete<T>(bindings: &'static [Binding<T>], record: &Record) -> Vec<Problem> {
+fn incomplete(row: &dyn Statement, record: &Record) -> Vec<Problem> {
+    let arguments = || (0..).map_while(|k| row.argument(k)).enumerate();
     let mut problems = Vec::new();
     let has = |k: usize| record.given.iter().any(|g| g.argument == k);
     let mut groups_seen: Vec<&str> = Vec::new();
-    for (k, b) in bindings.iter().enumerate() {
-        match b.argument.group {
-            None if b.argument.required && !has(k) => problems.push(Problem::new(
+    for (k, argument) in arguments() {
+        match argument.group {
+            None if argument.required && !has(k) => problems.push(Problem::new(
                 "missing_argument",
                 format!(
                     "needs {} = {}",
-                    b.argument.keyword(),
-                    b.argument.kind.describe()
+                    argument.keyword(),
+                    argument.kind.describe()
                 ),
             )),
-            Some(group) if b.argument.required && !groups_seen.contains(&group) => {
+            Some(group) if argument.required && !groups_seen.contains(&group) => {
                 groups_seen.push(group);
-                let all = bindings.iter().enumerate();
-                let members = all.filter(|(_, m)| m.argument.group == Some(group));
-                if !members.clone().any(|(m, _)| has(m)) {
-                    let words: Vec<String> = members.map(|(_, m)| m.argument.keyword()).collect();
+                let members = || arguments().filter(|(_, m)| m.group == Some(group));
+                if !members().any(|(m, _)| has(m)) {
+                    let words: Vec<String> = members().map(|(_, m)| m.keyword()).collect();
                     problems.push(Problem::new(
                         "missing_argument",
                         format!("does not say its {group}: one of {}", words.join(", ")),

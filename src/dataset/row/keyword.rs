@@ -4,6 +4,10 @@ use crate::diagnostic::near_names;
 
 /// "did you mean 12 or 121" for a number that is not among those known.
 pub fn near_ids(id: u32, known: impl Iterator<Item = u32>) -> Option<String> {
+    near_numbers(id, &mut { known })
+}
+
+fn near_numbers(id: u32, known: &mut dyn Iterator<Item = u32>) -> Option<String> {
     let known: Vec<String> = known.map(|k| k.to_string()).collect();
     let near = near_names(&id.to_string(), known.iter().map(String::as_str));
     (!near.is_empty()).then(|| format!("did you mean {}?", near.join(" or ")))

@@ -18,6 +18,7 @@ pub(crate) use contact::{ADVICE as EXPONENT_ADVICE, infinitely_stiff, is_infinit
 
 use super::advice;
 use super::ast::{Ast, Node, NodeIx};
+use crate::arrange::Arrange;
 use crate::diagnostic::{Diagnostic, Severity, Span};
 use crate::scalar::Scalar;
 
@@ -69,7 +70,7 @@ impl Doubt {
 
 /// Returns doubts as warnings about a text, in its order.
 fn said(mut doubts: Vec<Doubt>, text: &str) -> Vec<Diagnostic> {
-    doubts.sort_by_key(|d| d.span.start);
+    doubts.arrange_by_key(|d| d.span.start);
     let warning = |d: Doubt| Diagnostic {
         severity: Severity::Warning,
         ..advice::at(text, d.code, d.message, d.span).help(d.help)

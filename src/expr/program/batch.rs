@@ -7,7 +7,8 @@
 //! of vector instructions; which one runs is decided when the batch is made. The result of each
 //! point is that of [`Program::run`], to the bit.
 
-use super::code::{Code, Core, Instruction, gathered, partial};
+use super::code::{Code, Core, Instruction, gathered};
+use super::expand::Expand;
 use super::machine::{Columns, written_out};
 use super::operation::{BinaryOp, Comparison, UnaryOp, from_mask};
 use super::run::Program;
@@ -48,7 +49,8 @@ pub(super) struct Block([Vector; VECTORS]);
 #[derive(Clone, Debug)]
 pub struct Batch {
     program: Program,
-    /// its code, with short functions written out where loops take them
+    /// its code, with short functions written out where loops take them, and partial derivatives
+    /// of all others as operations
     core: Arc<Core>,
     /// all of the program as one loop over the columns themselves
     whole: Option<Arc<Columns>>,
@@ -130,6 +132,10 @@ impl Program {
             false => None,
         };
         let core = written.unwrap_or_else(|| self.shared_core());
+        let core = match core.expanded(Expand::Partials) {
+            Some(expanded) => Arc::new(expanded),
+            None => core,
+        };
         let nothing = Block([Vector::constant(f64::NAN); VECTORS]);
         let mut registers = vec![nothing; core.size as usize];
         for (register, &c) in registers.iter_mut().zip(&core.constants) {
@@ -474,23 +480,14 @@ fn plain(core: &Core, instruction: &Instruction, r: &mut [Block]) {
         Code::Lookup { table, order } => {
             each!(r, to = |x = a| x.lookup(&core.tables[table as usize], order))
         }
-        Code::Call(_, count) | Code::Partial(_, count, _) => {
+        Code::Call(function, count) => {
             let arguments = core.arguments(a, count);
             for k in 0..VECTORS {
-                let value = gathered(
-                    arguments,
-                    |x| r[x as usize].0[k],
-                    |args| match code {
-                        Code::Partial(function, _, which) => {
-                            partial(function, args, which as usize)
-                        }
-                        Code::Call(function, _) => function.eval(args),
-                        _ => unreachable!("only functions have lists of arguments"),
-                    },
-                );
-                r[to as usize].0[k] = value;
+                let register = |x: u32| r[x as usize].0[k];
+                r[to as usize].0[k] = gathered(arguments, register, |args| function.eval(args));
             }
         }
+        Code::Partial(..) => unreachable!("a batch has partial derivatives expanded"),
     }
 }
 

@@ -183,7 +183,7 @@ impl Core {
         &self.lists[first as usize..(first + count) as usize]
     }
 
-    /// Performs one instruction.
+    /// Performs one instruction; over numbers that do not call functions, none that does.
     #[inline(always)]
     pub(super) fn perform<S: Scalar>(&self, instruction: &Instruction, registers: &mut [S]) {
         let Instruction {
@@ -205,12 +205,17 @@ impl Core {
             Code::CompareSelect(op) => S::select(op.apply(r(a), r(b)), r(c), r(d)),
             Code::If => arithmetic_if(r(a), r(b), r(c), r(d)),
             Code::Lookup { table, order } => r(a).lookup(&self.tables[table as usize], order),
-            Code::Call(function, count) => {
+            Code::Call(function, count) if S::CALLS_FUNCTIONS => {
                 gathered(self.arguments(a, count), r, |args| function.eval(args))
             }
-            Code::Partial(function, count, k) => gathered(self.arguments(a, count), r, |args| {
-                partial(function, args, k as usize)
-            }),
+            Code::Partial(function, count, k) if S::CALLS_FUNCTIONS => {
+                gathered(self.arguments(a, count), r, |args| {
+                    partial(function, args, k as usize)
+                })
+            }
+            Code::Call(..) | Code::Partial(..) => {
+                unreachable!("calls are expanded for numbers that do not call functions")
+            }
         };
     }
 }

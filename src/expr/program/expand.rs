@@ -2,9 +2,11 @@
 //! operations of their rows.
 
 use super::builder::{Builder, Folding};
-use super::code::partial;
+use super::code::{Code, Core, Instruction, partial};
+use super::input::Input;
 use super::node::{Node, Value};
 use super::record::Sym;
+use super::schedule;
 use std::cell::RefCell;
 
 /// The nodes that are expanded.
@@ -82,6 +84,27 @@ impl Builder {
                 self.partial_of(function, &of, k)
             }
         }
+    }
+}
+
+impl Core {
+    /// Returns the same code with calls or their partial derivatives expanded; `None` where there
+    /// are none.
+    pub(super) fn expanded(&self, what: Expand) -> Option<Core> {
+        let is_concerned = |instruction: &Instruction| match instruction.code {
+            Code::Partial(..) => true,
+            Code::Call(..) => what == Expand::Calls,
+            _ => false,
+        };
+        if !self.code.iter().any(is_concerned) {
+            return None;
+        }
+        let mut builder = Builder::new(Folding::Strict);
+        let inputs: Vec<Input> = (0..self.n_inputs as u32).map(Input::Slot).collect();
+        let outputs = self.record(&mut builder, &inputs);
+        let outputs = builder.expanded(&outputs, what);
+        let (_, core, _) = schedule::core(&builder, &outputs, Some(&inputs));
+        Some(core)
     }
 }
 

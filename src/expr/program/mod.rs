@@ -30,6 +30,7 @@ mod dependence;
 mod display;
 mod expand;
 mod follow;
+mod general;
 mod gradient;
 mod guard;
 mod hashing;

@@ -233,6 +233,8 @@ macro_rules! recorded {
 
 impl<'b> Scalar for Sym<'b> {
     type Mask = Condition<'b>;
+    /// what is recorded follows the order of the rows
+    const CALLS_FUNCTIONS: bool = true;
 
     fn constant(x: f64) -> Self {
         Sym::Constant(x)

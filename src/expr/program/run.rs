@@ -4,7 +4,7 @@ use super::code::Core;
 use super::input::Input;
 use super::machine::{Alike, Engine, Machine};
 use crate::diagnostic::{Cause, Diagnostic, Error, counted};
-use crate::scalar::{Scalar, Table};
+use crate::scalar::Table;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -15,18 +15,18 @@ use std::sync::atomic::{AtomicU64, Ordering};
 #[derive(Clone, Debug)]
 pub struct Program {
     /// tells whose registers a [`Work`] holds
-    id: u64,
+    pub(super) id: u64,
     /// what the host supplies, in this order
-    inputs: Arc<[Input]>,
-    machine: Arc<Machine>,
+    pub(super) inputs: Arc<[Input]>,
+    pub(super) machine: Arc<Machine>,
 }
 
 /// The registers of a program while it runs. Any program may use any work; changing between them
 /// costs a preparation.
 #[derive(Clone, Debug)]
 pub struct Work<S = f64> {
-    owner: u64,
-    registers: Vec<S>,
+    pub(super) owner: u64,
+    pub(super) registers: Vec<S>,
 }
 
 /// Added to the owner of registers that are laid out for the machine, which needs more of them.
@@ -289,34 +289,6 @@ impl Program {
         self.results(work).first().copied().unwrap_or(f64::NAN)
     }
 
-    /// Runs over any number, unchecked as [`Program::run`].
-    pub fn eval<S: Scalar>(&self, inputs: &[S], work: &mut Work<S>, out: &mut [S]) {
-        let core = self.core();
-        let padded;
-        let inputs = if inputs.len() < self.inputs.len() {
-            padded = self.padded(inputs, S::constant(f64::NAN));
-            &padded
-        } else {
-            inputs
-        };
-        if work.owner != self.id {
-            self.prepare(work);
-        }
-        let registers = &mut work.registers[..];
-        for (register, &k) in registers[core.constants.len()..].iter_mut().zip(&core.used) {
-            *register = inputs[k as usize];
-        }
-        for instruction in &core.code {
-            core.perform(instruction, registers);
-        }
-        for (out, &r) in out.iter_mut().zip(&core.outputs) {
-            *out = registers[r as usize];
-        }
-        if out.len() > core.outputs.len() {
-            out[core.outputs.len()..].fill(S::constant(f64::NAN));
-        }
-    }
-
     /// Checks how many values and places for outputs a caller gave.
     ///
     /// # Errors
@@ -344,24 +316,10 @@ impl Program {
 
     /// Returns the inputs with as many as are missing added.
     #[cold]
-    fn padded<S: Copy>(&self, inputs: &[S], missing: S) -> Vec<S> {
+    pub(super) fn padded<S: Copy>(&self, inputs: &[S], missing: S) -> Vec<S> {
         let mut padded = inputs.to_vec();
         padded.resize(self.inputs.len(), missing);
         padded
-    }
-
-    /// Lays out the registers for this program.
-    #[cold]
-    fn prepare<S: Scalar>(&self, work: &mut Work<S>) {
-        let core = self.core();
-        // whatever happens here, these registers belong to nobody until they are complete
-        work.owner = 0;
-        work.registers.clear();
-        work.registers
-            .extend(core.constants.iter().map(|&c| S::constant(c)));
-        work.registers
-            .resize(core.size as usize, S::constant(f64::NAN));
-        work.owner = self.id;
     }
 
     /// Lays out the frame of the machine.

@@ -6,6 +6,7 @@
 //! told of is data: `check` makes a finding of it, an analysis a warning.
 
 use super::*;
+use crate::arrange::Arrange;
 use crate::model::geometry::marker_frame;
 use crate::physics::joint::{JointKind, Relation, Tie};
 use crate::scalar::Scalar;
@@ -266,7 +267,7 @@ fn rack(model: &Model, element: ElementId, markers: [u32; 2]) -> Option<Misalign
     let turning = |joints: &[(u32, &Joint)]| {
         let turns = |(id, j): &(u32, &Joint)| Some((*id, off(j)?)).filter(|_| turns(j.kind));
         let mut all: Vec<(u32, f64)> = joints.iter().filter_map(turns).collect();
-        all.sort_by(|a, b| a.1.total_cmp(&b.1));
+        all.arrange_by(|a, b| a.1.total_cmp(&b.1));
         all.first().copied()
     };
     let slides = own.iter().any(|(_, j)| j.kind == JointKind::Translational);

@@ -1,6 +1,7 @@
 //! Joints that stand twice: of the same type, between the same parts, at the same place.
 
 use super::*;
+use crate::arrange::Arrange;
 use crate::model::geometry::marker_frame;
 use crate::physics::joint::Displacements;
 use crate::space::Frame;
@@ -27,7 +28,7 @@ pub(super) fn joints_stand_once(model: &Model, out: &mut Out) {
             continue;
         }
         let mut bodies = [model.body_of(joint.i), model.body_of(joint.j)];
-        bodies.sort();
+        bodies.arrange();
         let between = seen.entry(bodies).or_default();
         let mut between_them = between.iter();
         let alike = between_them.find(|(_, kind, there)| *kind == joint.kind && same(&at, there));

@@ -2,6 +2,7 @@
 //! parts lie on each other, or a torque turns two parts about no axis.
 
 use super::*;
+use crate::arrange::Arrange;
 use crate::model::geometry::marker_frame;
 use crate::space::{Frame, Vec3};
 use std::cell::LazyCell;
@@ -64,7 +65,7 @@ fn bodies_named(model: &Model, references: Vec<Named>, in_functions: Vec<u32>) -
         .into_iter()
         .filter_map(|m| model.body_of(m))
         .collect();
-    bodies.sort();
+    bodies.arrange();
     bodies.dedup();
     bodies
 }
@@ -282,7 +283,7 @@ impl<'a> Sorted<'a> {
             .unwrap_or(0);
         let along = places.iter().enumerate().map(|(k, p)| (p.0[axis], k));
         let mut order: Vec<(f64, usize)> = along.collect();
-        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        order.arrange_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         Self {
             places,
             axis,
@@ -391,7 +392,7 @@ impl Uses {
         let unnamed = |m: u32| !contains(&self.named, &m);
         let is_one = |a: &Idle, b: &Idle| {
             let mut bodies = [a.1, b.1];
-            bodies.sort();
+            bodies.arrange();
             bodies[0] != bodies[1]
                 && chosen(unnamed(a.0), unnamed(b.0))
                 && bodies.iter().all(|&b| joined(b))

@@ -27,6 +27,7 @@ mod superseded;
 mod systems;
 
 use super::*;
+use crate::arrange::Arrange;
 use crate::diagnostic::{Diagnostic, Severity, near_names};
 
 /// Where findings go.
@@ -166,7 +167,7 @@ impl Model {
                 "the rule \"{name}\" finds errors"
             );
         }
-        out.sort_by_key(|d| (d.line, d.column));
+        out.arrange_by_key(|d| (d.line, d.column));
         out
     }
 
@@ -177,7 +178,7 @@ impl Model {
             rule(self, &mut out);
         }
         out.retain(|d| d.severity == Severity::Error);
-        out.sort_by_key(|d| (d.line, d.column));
+        out.arrange_by_key(|d| (d.line, d.column));
         out
     }
 
@@ -189,7 +190,7 @@ impl Model {
             doubt(self, &mut out);
         }
         // what is about no element comes last
-        out.sort_by_key(|d| (d.line == 0, d.line, d.column));
+        out.arrange_by_key(|d| (d.line == 0, d.line, d.column));
         out
     }
 }

@@ -7,6 +7,7 @@
 
 use super::drawing::{Drawing, Names, Wanted, drawing};
 use super::{Pictured, View, drawing_svg};
+use crate::arrange::Arrange;
 use crate::diagnostic::Diagnostic;
 use crate::report::picture;
 use crate::scalar::Scalar;
@@ -250,7 +251,7 @@ impl Palette {
     /// Chooses colours from those that occur, and how often they do.
     fn new(found: &HashMap<[u8; 3], usize>) -> Self {
         let mut all: Vec<([u8; 3], usize)> = found.iter().map(|(c, n)| (*c, *n)).collect();
-        all.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));
+        all.arrange_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));
         let exact = if all.len() <= COLOURS {
             all.len()
         } else {

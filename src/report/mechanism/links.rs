@@ -4,6 +4,7 @@
 use super::bodies::{Bodies, Body};
 use super::solid::{Solid, along_z};
 use super::{Form, Piece, Role, Sizes, Trail};
+use crate::arrange::Arrange;
 use crate::model::{ElementId, ElementKind, Family, Model};
 use crate::space::{Frame, Mat3, Vec3, rotation};
 use std::collections::BTreeSet;
@@ -214,7 +215,7 @@ fn several(places: &[Vec3<f64>], sizes: Sizes) -> Forms {
 
 /// Returns the convex hull of points of a plane, counter-clockwise (Andrew's chains).
 fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    points.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
+    points.arrange_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
     let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     };

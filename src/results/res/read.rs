@@ -1,6 +1,7 @@
 //! Reading `.res` files of the XML form, tag by tag.
 
 use super::{EXPRESSIONS, text};
+use crate::arrange::Arrange;
 use crate::diagnostic::{Diagnostic, counted};
 use crate::results::{
     Column, Component, Entity, Kind, Run, Sequence, Status, component_unit, malformed, no_row,
@@ -225,7 +226,7 @@ impl Reading {
         }
         // the order of the numbers
         let mut by_id: Vec<usize> = (0..self.ids.len()).collect();
-        by_id.sort_by_key(|&c| self.ids[c]);
+        by_id.arrange_by_key(|&c| self.ids[c]);
         if let Some(pair) = by_id.windows(2).find(|w| self.ids[w[0]] == self.ids[w[1]]) {
             let id = self.ids[pair[0]];
             return Err(format!("the number {id} is given to two components"));

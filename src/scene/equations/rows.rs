@@ -1,6 +1,7 @@
 //! The rows of G: values, gradients along the freedoms, rates, and what a unit multiplier exerts.
 
 use super::Equations;
+use crate::arrange::Arrange;
 use crate::diagnostic::Subject;
 use crate::physics::action::Action;
 use crate::physics::row::{Drive, Law};
@@ -128,7 +129,7 @@ impl<S: Scalar> Equations<'_, S> {
         for (m, action) in actions {
             self.gradient(*m, action, None, &mut gradient);
         }
-        gradient.sort_by_key(|g| g.0);
+        gradient.arrange_by_key(|g| g.0);
         gradient
     }
 
@@ -148,7 +149,7 @@ impl<S: Scalar> Equations<'_, S> {
         for (m, action) in actions {
             self.gradient(*m, action, both, &mut gradient);
         }
-        gradient.sort_by_key(|g| g.0);
+        gradient.arrange_by_key(|g| g.0);
         gradient
     }
 
@@ -205,7 +206,7 @@ impl<S: Scalar> Equations<'_, S> {
                 second = rate.first;
             }
         }
-        gradient.sort_by_key(|g| g.0);
+        gradient.arrange_by_key(|g| g.0);
         gradient.retain(|g| !g.1.is_known_zero());
         RowValue {
             value,

@@ -15,6 +15,7 @@ mod sides;
 mod turning;
 mod valley;
 
+use crate::arrange::Arrange;
 pub use locked::{Lock, locked};
 pub use passes::passes;
 use selection::{Rows, margin, norm, select};
@@ -220,6 +221,6 @@ fn place(scene: &Scene, numbers: &[f64], touched: &[bool]) -> Vec<(String, f64)>
             Source::Driven(_) => None,
         })
         .collect();
-    all.sort_by_key(|c| c.0);
+    all.arrange_by_key(|c| c.0);
     all.into_iter().map(|(_, name, x)| (name, x)).collect()
 }

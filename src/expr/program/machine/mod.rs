@@ -82,6 +82,8 @@ pub enum Engine {
 /// Straight code as steps and as code of the processor.
 pub(super) struct Machine {
     core: Arc<Core>,
+    /// the same without calls, where it has any; made when it is first needed
+    without_calls: OnceLock<Option<Core>>,
     made: Arc<Made>,
     /// components that are run one by one in place of the whole
     alike: Option<Arc<Alike>>,
@@ -109,8 +111,12 @@ impl std::fmt::Debug for Machine {
 
 impl Machine {
     pub(super) fn new(core: Arc<Core>) -> Self {
-        let (made, alike) = (Arc::default(), None);
-        Self { core, made, alike }
+        Self {
+            core,
+            without_calls: OnceLock::new(),
+            made: Arc::default(),
+            alike: None,
+        }
     }
 
     /// Returns the machine of a core that goes through its components.
@@ -144,6 +150,13 @@ impl Machine {
 
     pub(super) fn core(&self) -> &Arc<Core> {
         &self.core
+    }
+
+    /// Returns the core with calls and their partial derivatives as operations, which `expanded`
+    /// makes of one that has any.
+    pub(super) fn core_without_calls(&self, expanded: impl FnOnce(&Core) -> Option<Core>) -> &Core {
+        let made = self.without_calls.get_or_init(|| expanded(&self.core));
+        made.as_ref().unwrap_or(&self.core)
     }
 
     /// Returns the same machine with one engine from the first run on; `None` where that is not to
