@@ -4,6 +4,8 @@
 mod api;
 #[path = "house/codes.rs"]
 mod codes;
+#[path = "house/constants.rs"]
+mod constants;
 #[path = "house/packages.rs"]
 mod packages;
 #[path = "house/pages.rs"]

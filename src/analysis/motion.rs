@@ -286,6 +286,7 @@ fn push_marker(text: &mut String, number: u32, marker: &Marker) {
 
 /// Appends numbers as `{:?}` does; small whole ones, which most are, without its work.
 fn push_numbers(text: &mut String, numbers: [f64; 3]) {
+    /// Largest whole number that is written by itself.
     const SMALL: f64 = 1e5;
     text.push('[');
     for (k, x) in numbers.into_iter().enumerate() {

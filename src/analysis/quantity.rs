@@ -40,6 +40,7 @@ pub(in crate::analysis) fn short(x: f64) -> String {
 
 /// Writes values of coordinates, the first four: "JOINT/1 angle = 1.571, JOINT/2 angle = 0".
 pub(in crate::analysis) fn place(coordinates: &[(String, f64)]) -> String {
+    /// Coordinates that are shown, at most.
     const SHOWN: usize = 4;
     let rounded = |x: f64| if x.abs() < 1e-12 { 0.0 } else { x };
     let some = coordinates.iter().take(SHOWN);

@@ -1,4 +1,4 @@
-//! How far off the results of an integration are: measured by a second one at another request.
+//! The error of an integration, measured by a second one at another request.
 //!
 //! The second one begins at the same state of the same system, at a larger request, so that it
 //! takes six tenths of the steps. Errors follow requests:
@@ -49,7 +49,7 @@ const TOLD_REQUESTS: f64 = 50.0;
 /// The same over the largest value of a channel: less is not seen in a curve.
 const TOLD_OF_SIZE: f64 = 1e-3;
 
-/// What tables show at some outputs.
+/// The values that tables show at some outputs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sampled {
     /// the outputs that are wanted, in s, and how many of them have passed
@@ -164,14 +164,16 @@ impl Session {
     }
 
     /// Measures how far off a simulation is whose results are there, and notes it in the record;
+    /// returns the error of the column that is farthest off, over its size, if it is known.
     /// `start`: the system as it was at the beginning.
     pub(super) fn measure(
         &mut self,
         start: &System,
         measured: &Measured<'_>,
         watch: &mut dyn Watch,
-    ) {
+    ) -> Option<f64> {
         let phase = Phase::begin();
+        let mut off = None;
         let asked = measured.settings.error;
         let before = self.beside.take();
         let mut found = None;
@@ -191,7 +193,7 @@ impl Session {
         }
         match found {
             Some(other) => {
-                self.note_measured(measured, &other);
+                off = Some(self.note_measured(measured, &other));
                 self.beside = other.beside;
             }
             None if watch.interrupted() => {}
@@ -203,6 +205,7 @@ impl Session {
         }
         let (own, translation) = phase.elapsed();
         self.run.record.seconds.accuracy += own + translation;
+        off
     }
 
     /// Returns the requests at which to integrate once more, and how: the first that tells the
@@ -281,8 +284,8 @@ impl Session {
     }
 
     /// Notes in the record what the difference to a further integration says, and warns where that
-    /// is much.
-    fn note_measured(&mut self, measured: &Measured<'_>, other: &Other) {
+    /// is much; returns the largest error of a column over its size.
+    fn note_measured(&mut self, measured: &Measured<'_>, other: &Other) -> f64 {
         let asked = measured.settings.error;
         let of_method = safety(self.last.methods());
         // the further integration is off by so many times the error of the run
@@ -320,6 +323,7 @@ impl Session {
             *most = most.max(largest(values));
         }
         let mut worst: Option<(f64, ChannelAccuracy)> = None;
+        let mut most: f64 = 0.0;
         let both = sampled.values.iter().zip(&other.sampled.values);
         for (column, (own, others)) in columns.iter().zip(both) {
             let of_unit = of_units.get(column.unit.as_str()).copied().unwrap_or(0.0);
@@ -330,6 +334,7 @@ impl Session {
             let size = largest(&own).max(LEAST_SIZE * of_unit);
             channel.see(&found.bars, size, found.lost_from);
             let off = channel.usual / of_method.differences;
+            most = most.max(off);
             if channel.lost_from.is_some() || off > TOLD_OF_SIZE.max(TOLD_REQUESTS * asked) {
                 let is_worst = worst.as_ref().is_none_or(|(most, _)| off > *most);
                 worst = if is_worst {
@@ -345,6 +350,7 @@ impl Session {
                 requests: off / asked,
             });
         }
+        most
     }
 }
 

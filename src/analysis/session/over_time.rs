@@ -2,10 +2,11 @@
 
 use super::apart::Mechanisms;
 use super::companion::Integrated;
-use super::growth::Growth;
+use super::growth::{Growth, Looks};
 use super::measured::{Measured, Sampled};
 use super::outcome::counts;
 use super::phase::Phase;
+use super::ranges::Ranges;
 use super::rows::{Follower, Seen};
 use super::simulate::Span;
 use super::stop_reason::StopReason;
@@ -20,7 +21,7 @@ use crate::analysis::watch::Watch;
 use crate::diagnostic::{Diagnostic, counted};
 use crate::expr::program::Program;
 use crate::model::ElementKind;
-use crate::numeric::{self, Ode, noise};
+use crate::numeric::{Ode, noise};
 use crate::results::{self, Event, Kind, Status};
 use crate::scene::layout::Layout;
 use std::ops::Range;
@@ -38,10 +39,9 @@ impl Session {
         program: &Program,
         watch: &mut dyn Watch,
     ) -> Result<Status, Vec<Diagnostic>> {
-        let kind = if analysis == Analysis::Kinematic {
-            Kind::Kinematic
-        } else {
-            Kind::Dynamic
+        let kind = match analysis {
+            Analysis::Kinematic => Kind::Kinematic,
+            _ => Kind::Dynamic,
         };
         // the integration
         let settings = self.integration_of(system, kind, span);
@@ -53,53 +53,39 @@ impl Session {
         let outputs = span.output.times(span.start, span.end);
         let start = self.measures(kind).then(|| system.clone());
         seen.sampled = (start.is_some()).then(|| Sampled::of(&self.run, &outputs));
-        let (mut trajectory, [seconds, processor]) = self.timed(
-            system,
-            (kind, span, &outputs),
-            &settings,
-            (&mut seen, watch),
-        )?;
+        let asked = (kind, span, &outputs[..]);
+        let (mut trajectory, [seconds, processor]) =
+            self.timed(system, asked, &settings, (&mut seen, watch))?;
         // its results
         let phase = Phase::begin();
         let until = trajectory.t.len();
         self.see(&mut seen, system, &mut trajectory, until);
-        self.warn_of_gaps();
         self.run.log.push(Event::End);
         self.rank_changes(system, chosen, &trajectory);
-        self.note_sensors(system, &trajectory);
-        self.note_downstream(system, &trajectory);
-        let stopped = self.stop_reason(system, &trajectory, span.end);
-        if stopped.as_ref().is_some_and(StopReason::is_lock) {
-            self.warn_of_locks();
-        }
-        self.note_drift(system, &seen.balance);
         let mut typical = vec![0.0; system.scene.layout.n_y()];
         Ode::typical(system, &mut typical);
-        self.account(&trajectory.energy, !seen.ranges.stood_still(&typical));
+        let stopped = self.stop_reason(system, &trajectory, span.end);
+        self.look_back(
+            system,
+            (&seen, &typical),
+            (&trajectory, settings.error),
+            stopped.as_ref(),
+        );
         if settings.is_auto() && kind == Kind::Dynamic {
             self.stiffness.see(&trajectory, span.end - span.start);
         }
         self.last = Integrated::of(kind, &trajectory, settings.error, span);
-        let last = trajectory.rows.last().cloned();
-        if !matches!(stopped, Some(StopReason::RunsAway { .. })) {
-            let stops = matches!(stopped, Some(StopReason::Method { .. }));
-            self.warn_of_growth(seen.looks.growth(system, stops));
-        }
-        if seen.ranges.exceed(settings.error) {
-            self.warn_of_energy(&trajectory);
-        }
-        if kind == Kind::Dynamic && !settles {
-            self.warn_of_small_motion(system, &seen, (&typical, settings.error));
-        }
-        self.warn_of_rounding((system, &seen), &trajectory, settings.error);
-        self.warn_of_splines(seen.readings);
-        self.warn_of_tilts(seen.tilts);
         // what the next simulation begins with
-        let last = last.unwrap_or(first);
+        let last = trajectory.rows.last().cloned().unwrap_or(first);
         self.keep(system, last);
         self.keep_left(trajectory.left.take(), &system.scene);
         phase.end(&mut self.run.record.seconds, |s| &mut s.evaluate);
-        if let (Some(start), Some(sampled)) = (start, &seen.sampled) {
+        // how far off they are
+        let mut off = None;
+        if let (Some(start), Some(sampled)) = (start, &seen.sampled)
+            && !settles
+            && moves(system, &seen.ranges, &typical)
+        {
             let measured = Measured {
                 kind,
                 span,
@@ -108,21 +94,49 @@ impl Session {
                 sampled,
                 trajectory: &trajectory,
             };
-            self.measure(&start, &measured, watch);
+            off = self.measure(&start, &measured, watch);
         }
+        let phase = Phase::begin();
+        self.warn_of_rounding((system, &seen.looks), &trajectory, (settings.error, off));
+        self.warn_of_splines(seen.readings);
+        self.warn_of_tilts(seen.tilts);
+        phase.end(&mut self.run.record.seconds, |s| &mut s.evaluate);
         // the record
-        self.warn_of_stability(&trajectory);
         self.run.record.error = Some(settings.error);
         let simulation = results::Simulation {
-            end: trajectory.t.last().copied().unwrap_or(span.start),
-            outputs: trajectory.t.len(),
-            method: methods(&trajectory),
             solve_seconds: seconds,
             solve_processor_seconds: processor,
-            counts: counts(&trajectory.stats, trajectory.limited),
-            ..results::Simulation::new(kind, span.start)
+            ..recorded(kind, span.start, &trajectory)
         };
         Ok(self.close(simulation, stopped))
+    }
+
+    /// Notes and warns of everything that the steps of a simulation have shown; `typical`:
+    /// magnitudes of the unknowns.
+    fn look_back(
+        &mut self,
+        system: &System,
+        (seen, typical): (&Seen, &[f64]),
+        (trajectory, error): (&Trajectory, f64),
+        stopped: Option<&StopReason>,
+    ) {
+        self.warn_of_gaps();
+        self.note_sensors(system, trajectory);
+        self.note_downstream(system, trajectory);
+        self.note_drift(system, &seen.balance);
+        if stopped.is_some_and(StopReason::is_lock) {
+            self.warn_of_locks();
+        }
+        let moves = !seen.ranges.stood_still(typical);
+        self.account(&trajectory.energy, moves);
+        if !matches!(stopped, Some(StopReason::RunsAway { .. })) {
+            let stops = matches!(stopped, Some(StopReason::Method { .. }));
+            self.warn_of_growth(seen.looks.growth(system, stops));
+        }
+        if seen.ranges.exceed(error) {
+            self.warn_of_energy(trajectory);
+        }
+        self.warn_of_stability(trajectory);
     }
 
     /// Chooses the method, and prepares the system for it.
@@ -320,15 +334,16 @@ impl Session {
         }
     }
 
-    /// Warns where a smaller error was asked for than rounding permits.
+    /// Warns where a smaller error was asked for than rounding permits; `off`: how far off the run
+    /// is, over the size of what it shows, if that has been measured.
     fn warn_of_rounding(
         &mut self,
-        (system, seen): (&System, &Seen),
+        (system, looks): (&System, &Looks),
         trajectory: &Trajectory,
-        error: f64,
+        (error, off): (f64, Option<f64>),
     ) {
         let (below, steps) = (trajectory.stats.below_rounding, trajectory.stats.steps);
-        if below > 0 {
+        if below > 0 && off.is_none_or(|off| off > error) {
             self.warn(RunWarning::BelowRounding {
                 error,
                 below,
@@ -340,7 +355,7 @@ impl Session {
             return;
         }
         let y = system.scene.layout.y();
-        let rows = seen.looks.rows().iter();
+        let rows = looks.rows().iter();
         let states: Vec<(f64, &[f64])> = rows.map(|r| (r[Layout::TIME], &r[y.clone()])).collect();
         // what it evaluates leaves nothing behind
         let reached = noise::along(&mut system.clone(), &states, (error, steps));
@@ -383,28 +398,6 @@ impl Session {
         self.is_at_rest() && still && !system.reads_time()
     }
 
-    /// Warns where all that moves is so small beside the model that permitted errors, which count
-    /// from its size, are a large part of the motion; not where everything rests.
-    fn warn_of_small_motion(
-        &mut self,
-        system: &System,
-        seen: &Seen,
-        (typical, asked): (&[f64], f64),
-    ) {
-        let l = system.scene.layout;
-        let begin = l.y().start;
-        let of = |places: Range<usize>| &typical[places.start - begin..places.end - begin];
-        let reach = seen.ranges.reach([of(l.q()), of(l.v())]);
-        let floor = numeric::Options::default().floor;
-        if reach > RESTING && reach < SMALL * floor {
-            self.warn(RunWarning::SmallMotion {
-                reach,
-                share: asked * floor / reach,
-                error: (asked * reach / floor).max(FINEST),
-            });
-        }
-    }
-
     /// Warns where stability, not the error asked for, set the steps of an explicit method.
     fn warn_of_stability(&mut self, trajectory: &Trajectory) {
         let (limited, steps) = (trajectory.stats.stability_limited, trajectory.stats.steps);
@@ -414,13 +407,8 @@ impl Session {
     }
 }
 
-/// Smallest request that makes sense to advise.
-const FINEST: f64 = 1e-13;
 /// Way of a coordinate, or velocity, over what is typical of it, up to which everything rests.
 const RESTING: f64 = 1e-9;
-/// The same, over the part of what is typical that errors count from at least, up to which a motion
-/// is small: errors are then a hundred requests and more.
-const SMALL: f64 = 1e-2;
 /// Request from which on rounding may add up to more within any number of steps.
 const FINE_REQUEST: f64 = 1e-7;
 /// Fewest steps whose roundings add up.
@@ -431,6 +419,26 @@ const TOLD_ENERGY: f64 = 0.2;
 const TOLD_SHARE: f64 = 0.25;
 /// The least number of them that is told.
 const TOLD_STEPS: usize = 200;
+
+/// Returns the place of a simulation in the record, but for its times.
+fn recorded(kind: Kind, start: f64, trajectory: &Trajectory) -> results::Simulation {
+    results::Simulation {
+        end: trajectory.t.last().copied().unwrap_or(start),
+        outputs: trajectory.t.len(),
+        method: methods(trajectory),
+        counts: counts(&trajectory.stats, trajectory.limited),
+        ..results::Simulation::new(kind, start)
+    }
+}
+
+/// Returns whether anything has moved by more than errors move what rests; `typical`: magnitudes of
+/// the unknowns.
+fn moves(system: &System, ranges: &Ranges, typical: &[f64]) -> bool {
+    let l = system.scene.layout;
+    let begin = l.y().start;
+    let of = |places: Range<usize>| &typical[places.start - begin..places.end - begin];
+    l.n_x > 0 || ranges.reach([of(l.q()), of(l.v())]) > RESTING
+}
 
 /// Returns whether a mechanism without freedom has states or a past all the same: these go on by
 /// integration, which keeps positions on the rows as well.

@@ -1,4 +1,4 @@
-//! How far coordinates have moved, and how fast they were, in a simulation: whether anything did.
+//! Ranges of coordinates and velocities in a simulation: whether anything has moved.
 
 use crate::scene::layout::Layout;
 use std::ops::Range;
@@ -65,6 +65,6 @@ impl Ranges {
 
     /// Returns whether any velocity changes by more than some error: below it nothing can be told.
     pub fn exceed(&self, error: f64) -> bool {
-        self.velocities.iter().any(|[low, high]| high - low > error)
+        (self.velocities.iter()).any(|[low, high]| high - low > error)
     }
 }

@@ -43,6 +43,7 @@ pub(super) enum Level {
 }
 
 impl Level {
+    /// Number of levels.
     pub const ALL: usize = 4;
 }
 

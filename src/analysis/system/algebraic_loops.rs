@@ -23,6 +23,7 @@ use crate::scene::slopes::{self, WIDTH};
 use crate::scene::{Scene, Source};
 use std::ops::Range;
 
+/// Iterations of a loop, at most: halving makes ε of 1 in 52.
 const MAX_ITERATIONS: usize = 60;
 /// Smallest part of a step that is tried.
 const SHORTEST_PART: f64 = 1e-6;

@@ -566,6 +566,7 @@ fn turns(system: &System, m: usize) -> bool {
 
 /// Returns for each motion whether any row reads it.
 fn read_by_rows(system: &System, values: &[f64]) -> Vec<bool> {
+    /// Change of what a motion prescribes by which the rows that read it are found.
     const DISPLACEMENT: f64 = 1e-4;
     let (scene, l) = (system.configured(), system.scene.layout);
     let (t, q, x) = (

@@ -157,15 +157,6 @@ pub enum RunWarning {
         /// how far, over its size and the request
         requests: f64,
     },
-    /// nothing moves by more than a small part of the size of the model
-    SmallMotion {
-        /// the largest way or velocity, over the size of the model, or over a rad
-        reach: f64,
-        /// permitted error over that
-        share: f64,
-        /// the error to ask for
-        error: f64,
-    },
     /// stability, not accuracy, sets the steps of an explicit method
     StabilityLimited {
         /// number of such steps
@@ -214,7 +205,6 @@ impl RunWarning {
             RunWarning::EnergyGrows { .. } => "energy_grows",
             RunWarning::EnergyUnsure { .. } => "energy_unsure",
             RunWarning::ErrorsAddUp { .. } => "errors_add_up",
-            RunWarning::SmallMotion { .. } => "small_motion",
             RunWarning::CompanionEnded { .. } => "accuracy_unknown",
         }
     }
@@ -247,7 +237,6 @@ impl RunWarning {
             | RunWarning::RoundingAddsUp { .. }
             | RunWarning::EnergyUnsure { .. }
             | RunWarning::ErrorsAddUp { .. }
-            | RunWarning::SmallMotion { .. }
             | RunWarning::StabilityLimited { .. }
             | RunWarning::CompanionEnded { .. } => None,
         }
@@ -322,11 +311,6 @@ impl RunWarning {
             } => growth(*factor, *within, fed_by.is_some()),
             RunWarning::EnergyUnsure { share } => energy(*share),
             RunWarning::ErrorsAddUp { channel, requests } => errors_add_up(channel, *requests),
-            RunWarning::SmallMotion {
-                reach,
-                share,
-                error,
-            } => small_motion(*reach, *share, *error),
             RunWarning::StabilityLimited { limited, steps } => stiff(*limited, *steps),
         }
     }
@@ -448,15 +432,6 @@ fn errors_add_up(channel: &ChannelAccuracy, requests: f64) -> String {
 /// Returns a number of two digits with its unit.
 fn amount_of(x: f64, unit: &str) -> String {
     format!("{x:.1e} {unit}").trim_end().to_string()
-}
-
-/// Returns how small a motion is beside its model, and what that makes of its errors.
-fn small_motion(reach: f64, share: f64, error: f64) -> String {
-    format!(
-        "nothing moves by more than {reach:.0e} of the size of the model, or rad. The requested error \
-         is relative to that size, which here permits {share:.0e} of the motion; for the same error \
-         relative to the motion: --error {error:.0e}"
-    )
 }
 
 /// Returns the way in which a run goes on after what a motion prescribes has jumped.

@@ -260,16 +260,6 @@ on such a motion, take one that does not: a mean, an amplitude, a number of turn
     cognate run model.acf --method AUTO  instead of HHT",
     },
     Code {
-        name: "small_motion",
-        summary: "nothing moves by more than a small part of the size of the model",
-        explanation: "\
-Errors are permitted in proportion to the largest values of a coordinate or velocity, but at least to a thousandth of the size of the
-model, so that what rests is not followed into its rounding. Where all that moves is far smaller than that, its errors are a larger part
-of it than ERROR says. Where the motion matters, ask for a smaller ERROR; where the model only rests, nothing is wrong.
-
-    cognate run model.acf --error 1e-10  instead of 1e-6",
-    },
-    Code {
         name: "stiff",
         summary: "stability, not accuracy, sets the steps of an explicit method",
         explanation: "\

@@ -234,6 +234,7 @@ impl Dop853 {
     /// # Errors
     /// The problem has no rate there.
     fn compare<P: Ode + ?Sized>(&mut self, problem: &mut P) -> Result<Fit, Failure> {
+        /// Place in the step at which two interpolants are compared.
         const MIDDLE: f64 = 0.5;
         let n = self.y0.len();
         // k₂ and k₃ have done their work

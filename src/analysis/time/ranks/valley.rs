@@ -134,6 +134,7 @@ impl Valley {
     /// Returns a place on the side of the lower end, or of a minimum on its wider side: as far from
     /// it as makes sure that it is enclosed.
     fn aside(&self) -> f64 {
+        /// Smaller part of a golden section.
         const GOLDEN: f64 = 0.381_966_011_250_105;
         let [(a, fa), (m, fm), (b, fb)] = self.points;
         let is_enclosed = fm <= fa && fm <= fb;
