@@ -65,6 +65,14 @@ impl Pace {
         }
     }
 
+    /// Returns the same with steps that are shorter than some step.
+    pub(super) fn at_most(self, step: f64) -> Self {
+        Self {
+            longest: self.longest.min(SHORTER_STEPS * step),
+            ..self
+        }
+    }
+
     /// Returns the longest step where that of the model is given.
     pub(super) fn longest_step(&self, given: f64) -> f64 {
         (given * self.steps).min(self.longest)

@@ -44,6 +44,10 @@ const FOLLOWS: f64 = 0.85;
 /// Difference of two integrations over the range of a channel up to which it tells the error of the
 /// better one.
 const NEAR: f64 = 0.1;
+/// Change of the number of steps up to which two integrations have the same steps.
+const ALIKE: f64 = 0.1;
+/// Share of the steps from which on it is stability that sets them.
+const STABILITY: f64 = 0.25;
 /// Error over the request from which on it is told that errors have added up.
 const TOLD_REQUESTS: f64 = 50.0;
 /// The same over the largest value of a channel: less is not seen in a curve.
@@ -102,7 +106,12 @@ impl Sampled {
 
 /// Where a further integration is at the end of a simulation, beside the run.
 #[derive(Clone, Debug)]
-pub(super) struct Beside(BTreeMap<UnknownId, f64>);
+pub(super) struct Beside {
+    /// all numbers of the run there
+    of: Vec<f64>,
+    /// the differences of its states
+    differences: BTreeMap<UnknownId, f64>,
+}
 
 impl Beside {
     /// Notes what the states at the end of two integrations differ by.
@@ -111,7 +120,10 @@ impl Beside {
         let ids = q.iter().chain(v).chain(x).copied();
         let places = system.scene.layout.states();
         let differences = places.map(|k| other[k] - own[k]);
-        Self(ids.zip(differences).collect())
+        Self {
+            differences: ids.zip(differences).collect(),
+            of: own.to_vec(),
+        }
     }
 
     /// Moves the state of a system by these differences.
@@ -120,7 +132,7 @@ impl Beside {
         let State { q, v, x } = &system.scene.unknowns;
         let ids = q.iter().chain(v).chain(x);
         for (number, id) in system.numbers[places].iter_mut().zip(ids) {
-            *number += self.0.get(id).copied().unwrap_or(0.0);
+            *number += self.differences.get(id).copied().unwrap_or(0.0);
         }
     }
 }
@@ -134,11 +146,14 @@ pub(super) struct Measured<'a> {
     pub settings: &'a Options,
     pub sampled: &'a Sampled,
     pub trajectory: &'a Trajectory,
+    /// where the further integration begins, beside the run
+    pub before: Option<&'a Beside>,
 }
 
 /// A further integration.
 struct Other {
     request: f64,
+    steps: usize,
     sampled: Sampled,
     /// times of its events, in s
     events: Vec<f64>,
@@ -163,6 +178,13 @@ impl Session {
         self.options.measure && !self.options.accuracy && kind == Kind::Dynamic
     }
 
+    /// Takes what the last simulation was off by, if the next one begins where it has ended.
+    pub(super) fn beside_now(&mut self) -> Option<Beside> {
+        let carried = self.carried.as_ref();
+        let goes_on = |beside: &Beside| carried.is_some_and(|c| c.numbers == beside.of);
+        self.beside.take().filter(goes_on)
+    }
+
     /// Measures how far off a simulation is whose results are there, and notes it in the record;
     /// returns the error of the column that is farthest off, over its size, if it is known.
     /// `start`: the system as it was at the beginning.
@@ -175,19 +197,21 @@ impl Session {
         let phase = Phase::begin();
         let mut off = None;
         let asked = measured.settings.error;
-        let before = self.beside.take();
         let mut found = None;
-        for (request, pace) in self.paces_beside(measured.settings) {
+        for (request, pace) in self.paces_beside(measured) {
             let mut system = start.clone();
-            before.iter().for_each(|before| before.apply(&mut system));
+            if let Some(before) = measured.before {
+                before.apply(&mut system);
+            }
             let other = self.integrate_beside(system, measured, (request, pace), watch);
             if watch.interrupted() {
                 break;
             }
-            let near =
-                |other: &Other| request < asked || are_near(measured.sampled, &other.sampled);
-            found = other.filter(near);
-            if found.is_some() {
+            let near = |o: &Other| o.request < asked || are_near(measured.sampled, &o.sampled);
+            let other = other.filter(near);
+            let differs = (other.as_ref()).is_some_and(|o| differ(measured.trajectory, o));
+            found = other.or(found);
+            if differs {
                 break;
             }
         }
@@ -210,15 +234,22 @@ impl Session {
 
     /// Returns the requests at which to integrate once more, and how: the first that tells the
     /// error is enough.
-    fn paces_beside(&self, settings: &Options) -> Vec<(f64, Pace)> {
-        let (asked, methods) = (settings.error, self.last.methods());
-        let follows = settings.h_max.is_infinite() && !self.last.has_steps_unasked();
+    fn paces_beside(&self, measured: &Measured<'_>) -> Vec<(f64, Pace)> {
+        let (asked, methods) = (measured.settings.error, self.last.methods());
+        let follows = measured.settings.h_max.is_infinite() && !self.last.has_steps_unasked();
         let smaller = companion_request(asked, methods, self.last.has_many_events());
         let mut all = Vec::new();
         if let Some(larger) = looser_request(asked, methods).filter(|_| follows) {
             all.push((larger, Pace::beside()));
         }
-        all.push((smaller, Pace::shorter(&self.last)));
+        let shorter = Pace::shorter(&self.last);
+        let duration = measured
+            .trajectory
+            .t
+            .last()
+            .map_or(0.0, |t| t - measured.span.start);
+        let mean = duration / measured.trajectory.stats.steps.max(1) as f64;
+        all.extend([(smaller, shorter), (smaller, shorter.at_most(mean))]);
         all
     }
 
@@ -278,6 +309,7 @@ impl Session {
         Some(Other {
             request,
             beside: ends.map(|(own, other)| Beside::between(&system, own, other)),
+            steps: other.stats.steps,
             sampled,
             events: other.event_times,
         })
@@ -352,6 +384,15 @@ impl Session {
         }
         most
     }
+}
+
+/// Returns whether the steps of two integrations differ, so that their difference tells an error:
+/// where both make them as long as they can, both are off alike. An explicit method whose steps
+/// stability limits is better than its request.
+fn differ(own: &Trajectory, other: &Other) -> bool {
+    let limited = own.stats.stability_limited as f64 > STABILITY * own.stats.steps as f64;
+    let ratio = other.steps as f64 / own.stats.steps.max(1) as f64;
+    limited || (ratio - 1.0).abs() > ALIKE
 }
 
 /// Returns whether two integrations are near the same solution: in most outputs of each channel

@@ -52,6 +52,7 @@ impl Session {
         let mut seen = self.begin_rows(kind, program, (system, span.end));
         let outputs = span.output.times(span.start, span.end);
         let start = self.measures(kind).then(|| system.clone());
+        let before = self.beside_now();
         seen.sampled = (start.is_some()).then(|| Sampled::of(&self.run, &outputs));
         let asked = (kind, span, &outputs[..]);
         let (mut trajectory, [seconds, processor]) =
@@ -93,6 +94,7 @@ impl Session {
                 settings: &settings,
                 sampled,
                 trajectory: &trajectory,
+                before: before.as_ref(),
             };
             off = self.measure(&start, &measured, watch);
         }
@@ -101,7 +103,6 @@ impl Session {
         self.warn_of_splines(seen.readings);
         self.warn_of_tilts(seen.tilts);
         phase.end(&mut self.run.record.seconds, |s| &mut s.evaluate);
-        // the record
         self.run.record.error = Some(settings.error);
         let simulation = results::Simulation {
             solve_seconds: seconds,
