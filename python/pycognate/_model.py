@@ -51,7 +51,7 @@ class Options(TypedDict, total=False):
     measure : bool
         Measure how far off the results are, by a further integration at a larger request, which
         costs about six tenths of the run: `Run.accuracy` tells. Where left out: a run by itself does
-        so, unless a routine for USER would be called again; the runs of a sweep do not.
+        so, unless a routine for USER would be called again; sessions and the runs of a sweep do not.
     full : bool
         Sets of results of all elements. Where left out: if the dataset asks for RESULTS, and if
         nothing else is asked for, no column and no REQUEST (of a model of more than 400 elements
@@ -444,6 +444,7 @@ class Model:
         Session
             The session, at time 0.
         """
+        options.setdefault("measure", False)
         return Session(self, **options)
 
     def sweep(

@@ -163,12 +163,12 @@ pub struct ChannelAccuracy {
 impl ChannelAccuracy {
     /// Returns how many digits of the largest value can be believed at 19 of 20 outputs.
     pub fn digits(&self) -> f64 {
-        (-Scalar::log10(self.usual)).max(0.0)
+        (-Scalar::log10(self.usual.max(f64::EPSILON))).max(0.0)
     }
 
     /// Returns how many digits of the largest value can be believed at all outputs.
     pub fn least_digits(&self) -> f64 {
-        (-Scalar::log10(self.relative)).max(0.0)
+        (-Scalar::log10(self.relative.max(f64::EPSILON))).max(0.0)
     }
 }
 
@@ -212,9 +212,10 @@ impl Accuracy {
             return String::new();
         };
         let [usual, least] = [worst.digits(), worst.least_digits()].map(|d| format!("{d:.1}"));
-        let at_worst = match usual == least {
-            true => String::new(),
-            false => format!(" ({least} where it is least known)"),
+        let digits = match (usual.as_str(), usual == least) {
+            ("0.0", _) => "no digit".to_owned(),
+            (_, true) => format!("{usual} digits"),
+            (_, false) => format!("{usual} digits ({least} where it is least known)"),
         };
         let size = match worst.usual > 0.0 {
             true => {
@@ -225,7 +226,7 @@ impl Accuracy {
         };
         let bar = format!("±{:.1e}{size} {}", worst.usual_bar, worst.unit);
         let mut text = format!(
-            "believe {usual} digits{at_worst}: {} is the worst, {}",
+            "believe {digits}: {} is the worst, {}",
             worst.channel,
             bar.trim_end()
         );

@@ -117,11 +117,6 @@ impl Integrated {
         &self.methods
     }
 
-    /// Returns the times of events, in s.
-    pub(super) fn events(&self) -> &[f64] {
-        &self.events
-    }
-
     /// Returns whether few steps lie between two events.
     pub(super) fn has_many_events(&self) -> bool {
         self.has_many_events

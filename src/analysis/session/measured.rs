@@ -22,7 +22,7 @@ use super::companion::Pace;
 use super::phase::Phase;
 use super::simulate::Span;
 use crate::analysis::accuracy::{
-    Comparison, LEAST_SIZE, Safety, companion_request, looser_request, safety, shifts,
+    Comparison, LEAST_SIZE, Safety, companion_request, looser_request, safety,
 };
 use crate::analysis::system::System;
 use crate::analysis::time::options::Options;
@@ -155,8 +155,6 @@ struct Other {
     request: f64,
     steps: usize,
     sampled: Sampled,
-    /// times of its events, in s
-    events: Vec<f64>,
     beside: Option<Beside>,
 }
 
@@ -311,7 +309,6 @@ impl Session {
             beside: ends.map(|(own, other)| Beside::between(&system, own, other)),
             steps: other.stats.steps,
             sampled,
-            events: other.event_times,
         })
     }
 
@@ -335,7 +332,8 @@ impl Session {
             },
             times: &times,
             partners: &partners,
-            shifts: &shifts(self.last.events(), &other.events),
+            // an output between an event of the one and that of the other differs by itself
+            shifts: &[],
         };
         let accuracy = self.run.record.accuracy.get_or_insert_default();
         accuracy.companions.push(other.request);
