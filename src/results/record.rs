@@ -1,9 +1,10 @@
 //! The record of a run: how it ended, what it cost, and what the user should know.
 
 use super::run::catch_up;
-use super::{Kind, Seconds, digits_of_six};
+use super::{Column, Kind, Seconds, digits_of_six};
 use crate::diagnostic::{Diagnostic, Subject};
 use crate::scalar::Scalar;
+use std::collections::BTreeMap;
 
 /// The way in which a run, or one simulation of it, ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -191,18 +192,21 @@ impl ChannelAccuracy {
 }
 
 impl Accuracy {
-    /// Returns the entry of a column, a new one where there is none.
-    pub(crate) fn channel(&mut self, name: &str, unit: &str) -> &mut ChannelAccuracy {
-        let found = self.channels.iter().position(|c| c.channel == name);
-        let k = found.unwrap_or(self.channels.len());
-        if found.is_none() {
-            self.channels.push(ChannelAccuracy {
-                channel: name.into(),
-                unit: unit.into(),
-                ..ChannelAccuracy::default()
-            });
-        }
-        &mut self.channels[k]
+    /// Returns the places of the entries of some columns, new ones where there are none.
+    pub(crate) fn places<'a>(&mut self, columns: impl Iterator<Item = &'a Column>) -> Vec<usize> {
+        let names = self.channels.iter().map(|c| c.channel.clone());
+        let known: BTreeMap<String, usize> = names.zip(0..).collect();
+        let mut place = |column: &Column| {
+            known.get(&column.name).copied().unwrap_or_else(|| {
+                self.channels.push(ChannelAccuracy {
+                    channel: column.name.clone(),
+                    unit: column.unit.clone(),
+                    ..ChannelAccuracy::default()
+                });
+                self.channels.len() - 1
+            })
+        };
+        columns.map(&mut place).collect()
     }
 
     /// Says how many digits to believe, and of which channel the fewest; empty where nothing is

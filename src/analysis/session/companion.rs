@@ -284,7 +284,8 @@ impl Session {
         // over all simulations so far
         let bars = &self.run.columns[bar].values;
         let largest = column.values.iter().fold(least, |m, x| m.max(x.abs()));
-        let channel = accuracy.channel(&column.name, &column.unit);
+        let place = accuracy.places(std::iter::once(column))[0];
+        let channel = &mut accuracy.channels[place];
         *channel = ChannelAccuracy {
             channel: column.name.clone(),
             unit: column.unit.clone(),

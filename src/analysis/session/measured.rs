@@ -84,6 +84,17 @@ impl Sampled {
         }
     }
 
+    /// Returns for each column the largest value of all that have its unit.
+    fn sizes(&self, run: &Run) -> Vec<f64> {
+        let units = self.columns.iter().map(|&k| &run.columns[k].unit);
+        let mut all: BTreeMap<&String, f64> = BTreeMap::new();
+        for (unit, values) in units.clone().zip(&self.values) {
+            let most = all.entry(unit).or_default();
+            *most = most.max(largest(values));
+        }
+        units.map(|unit| all[unit]).collect()
+    }
+
     /// Takes what it wants of the last `n` rows that a run holds.
     pub fn take(&mut self, run: &Run, n: usize) {
         let n_held = run.held().len();
@@ -205,7 +216,9 @@ impl Session {
             if watch.interrupted() {
                 break;
             }
-            let near = |o: &Other| o.request < asked || are_near(measured.sampled, &o.sampled);
+            let sizes = measured.sampled.sizes(&self.run);
+            let near =
+                |o: &Other| o.request < asked || are_near(measured.sampled, &o.sampled, &sizes);
             let other = other.filter(near);
             let differs = (other.as_ref()).is_some_and(|o| differ(measured.trajectory, o));
             found = other.or(found);
@@ -335,43 +348,27 @@ impl Session {
             // an output between an event of the one and that of the other differs by itself
             shifts: &[],
         };
+        let sampled = measured.sampled;
+        let sizes = sampled.sizes(&self.run);
         let accuracy = self.run.record.accuracy.get_or_insert_default();
         accuracy.companions.push(other.request);
-        let sampled = measured.sampled;
-        let columns = sampled
-            .columns
-            .iter()
-            .filter_map(|&k| self.run.columns.get(k));
-        let columns: Vec<&Column> = columns.collect();
-        let largest = |values: &[f64]| {
-            let finite = values.iter().filter(|x| x.is_finite());
-            finite.fold(0.0, |m: f64, x| m.max(x.abs()))
-        };
-        let mut of_units: BTreeMap<&str, f64> = BTreeMap::new();
-        for (column, values) in columns.iter().zip(&sampled.values) {
-            let most = of_units.entry(&column.unit).or_default();
-            *most = most.max(largest(values));
-        }
+        let columns = sampled.columns.iter().map(|&k| &self.run.columns[k]);
+        let places = accuracy.places(columns);
         let mut worst: Option<(f64, ChannelAccuracy)> = None;
         let mut most: f64 = 0.0;
         let both = sampled.values.iter().zip(&other.sampled.values);
-        for (column, (own, others)) in columns.iter().zip(both) {
-            let of_unit = of_units.get(column.unit.as_str()).copied().unwrap_or(0.0);
+        for ((place, (own, others)), &of_unit) in places.into_iter().zip(both).zip(&sizes) {
             let own: Vec<f64> = pairs.iter().map(|[k, _]| own[*k]).collect();
             let others: Vec<f64> = pairs.iter().map(|[_, k]| others[*k]).collect();
             let found = comparison.bars(&own, &others, of_unit);
-            let channel = accuracy.channel(&column.name, &column.unit);
+            let channel = &mut accuracy.channels[place];
             let size = largest(&own).max(LEAST_SIZE * of_unit);
             channel.see(&found.bars, size, found.lost_from);
             let off = channel.usual / of_method.differences;
             most = most.max(off);
-            if channel.lost_from.is_some() || off > TOLD_OF_SIZE.max(TOLD_REQUESTS * asked) {
-                let is_worst = worst.as_ref().is_none_or(|(most, _)| off > *most);
-                worst = if is_worst {
-                    Some((off, channel.clone()))
-                } else {
-                    worst
-                };
+            let told = channel.lost_from.is_some() || off > TOLD_OF_SIZE.max(TOLD_REQUESTS * asked);
+            if told && worst.as_ref().is_none_or(|(most, _)| off > *most) {
+                worst = Some((off, channel.clone()));
             }
         }
         if let Some((off, channel)) = worst {
@@ -393,22 +390,28 @@ fn differ(own: &Trajectory, other: &Other) -> bool {
     limited || (ratio - 1.0).abs() > ALIKE
 }
 
-/// Returns whether two integrations are near the same solution: in most outputs of each channel
-/// they differ by a small part of its range.
-fn are_near(own: &Sampled, other: &Sampled) -> bool {
+/// Returns whether two integrations are near the same solution: in most outputs of each column they
+/// differ by a small part of its range; `sizes`: of all columns of its unit.
+fn are_near(own: &Sampled, other: &Sampled, sizes: &[f64]) -> bool {
     let pairs = pairs(&own.times, &other.times);
-    let near = |(own, other): (&Vec<f64>, &Vec<f64>)| {
+    let near = |((own, other), size): ((&Vec<f64>, &Vec<f64>), &f64)| {
         let finite = own.iter().filter(|x| x.is_finite());
         let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
             (low.min(*x), high.max(*x))
         });
-        let rounding = f64::EPSILON.sqrt() * low.abs().max(high.abs());
-        let least = (NEAR * (high - low)).max(rounding);
+        let least = NEAR * (high - low).max(LEAST_SIZE * size);
         let is_far = |[k, l]: &&[usize; 2]| (own[*k] - other[*l]).abs() > least;
         let far = pairs.iter().filter(is_far).count();
         far as f64 <= (1.0 - USUAL_SHARE) * pairs.len() as f64
     };
-    own.values.iter().zip(&other.values).all(near)
+    let both = own.values.iter().zip(&other.values);
+    both.zip(sizes).all(near)
+}
+
+/// Returns the largest of some values.
+fn largest(values: &[f64]) -> f64 {
+    let finite = values.iter().filter(|x| x.is_finite());
+    finite.fold(0.0, |m: f64, x| m.max(x.abs()))
 }
 
 /// Returns the places in two ascending lists of the times that both have.
