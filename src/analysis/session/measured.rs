@@ -46,8 +46,10 @@ const FOLLOWS: f64 = 0.85;
 const NEAR: f64 = 0.1;
 /// Change of the number of steps up to which two integrations have the same steps.
 const ALIKE: f64 = 0.1;
-/// Share of the steps from which on it is stability that sets them.
-const STABILITY: f64 = 0.25;
+/// Share of the steps from which on it is stability, or rounding, that sets them.
+const LIMITED: f64 = 0.25;
+/// Steps of a further integration over those of the run, at most.
+const MOST_STEPS: usize = 4;
 /// Error over the request from which on it is told that errors have added up.
 const TOLD_REQUESTS: f64 = 50.0;
 /// The same over the largest value of a channel: less is not seen in a curve.
@@ -272,11 +274,14 @@ impl Session {
         (request, pace): (f64, Pace),
         watch: &mut dyn Watch,
     ) -> Option<Other> {
+        let trajectory = measured.trajectory;
         let settings = &Options {
             error: request,
             h_initial: measured.settings.h_initial.map(|h| h * pace.steps),
             h_max: pace.longest_step(measured.settings.h_max),
             left: None,
+            max_steps: (measured.settings.max_steps)
+                .min(MOST_STEPS * (trajectory.stats.steps + trajectory.stats.rejected + MOST)),
             ..measured.settings.clone()
         };
         // the results are left alone
@@ -291,7 +296,13 @@ impl Session {
         self.run.table.clone_from(&own.0.table);
         let span = measured.span;
         let mut seen = self.begin_rows(measured.kind, measured.program, (&system, span.end));
-        let outputs = &measured.sampled.wanted;
+        // beside a run that has failed as far as that came
+        let is_sensor = |ended: &Option<Ended>| matches!(ended, Some(Ended::Sensor(_)));
+        let failed = trajectory.ended.is_some() && !is_sensor(&trajectory.ended);
+        let outputs = match failed {
+            true => &measured.sampled.times,
+            false => &measured.sampled.wanted,
+        };
         let mut sampled = Sampled::of(&self.run, outputs);
         let (mut other, _) = self.integrated(
             (&mut system, None),
@@ -309,9 +320,6 @@ impl Session {
             self.receiver,
             self.options.error,
         ) = own;
-        let is_sensor = |ended: &Option<Ended>| matches!(ended, Some(Ended::Sensor(_)));
-        // beside a run that has failed it is compared as far as that came
-        let failed = measured.trajectory.ended.is_some() && !is_sensor(&measured.trajectory.ended);
         let alike = is_sensor(&other.ended) == is_sensor(&measured.trajectory.ended);
         if !failed && !(alike && (other.ended.is_none() || is_sensor(&other.ended))) {
             return None;
@@ -383,9 +391,10 @@ impl Session {
 
 /// Returns whether the steps of two integrations differ, so that their difference tells an error:
 /// where both make them as long as they can, both are off alike. An explicit method whose steps
-/// stability limits is better than its request.
+/// stability limits is better than its request, and below rounding no step is.
 fn differ(own: &Trajectory, other: &Other) -> bool {
-    let limited = own.stats.stability_limited as f64 > STABILITY * own.stats.steps as f64;
+    let limited = own.stats.stability_limited + own.stats.below_rounding;
+    let limited = limited as f64 > LIMITED * own.stats.steps as f64;
     let ratio = other.steps as f64 / own.stats.steps.max(1) as f64;
     limited || (ratio - 1.0).abs() > ALIKE
 }
