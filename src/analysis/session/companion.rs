@@ -284,15 +284,18 @@ impl Session {
         // over all simulations so far
         let bars = &self.run.columns[bar].values;
         let largest = column.values.iter().fold(least, |m, x| m.max(x.abs()));
-        let place = accuracy.places(std::iter::once(column))[0];
-        let channel = &mut accuracy.channels[place];
-        *channel = ChannelAccuracy {
+        let known = (accuracy.channels.iter()).position(|c| c.channel == column.name);
+        let mut channel = ChannelAccuracy {
             channel: column.name.clone(),
             unit: column.unit.clone(),
-            lost_from: channel.lost_from,
+            lost_from: known.and_then(|k| accuracy.channels[k].lost_from),
             ..ChannelAccuracy::default()
         };
         channel.see(bars, largest, lost_from);
+        match known {
+            Some(k) => accuracy.channels[k] = channel,
+            None => accuracy.channels.push(channel),
+        }
     }
 }
 

@@ -209,6 +209,7 @@ impl Session {
         let mut off = None;
         let asked = measured.settings.error;
         let mut found = None;
+        let sizes = measured.sampled.sizes(&self.run);
         for (request, pace) in self.paces_beside(measured) {
             let mut system = start.clone();
             if let Some(before) = measured.before {
@@ -218,7 +219,6 @@ impl Session {
             if watch.interrupted() {
                 break;
             }
-            let sizes = measured.sampled.sizes(&self.run);
             let near =
                 |o: &Other| o.request < asked || are_near(measured.sampled, &o.sampled, &sizes);
             let other = other.filter(near);

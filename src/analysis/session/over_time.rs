@@ -143,6 +143,7 @@ impl Session {
     /// Chooses the method, and prepares the system for it.
     fn integration_of(&mut self, system: &mut System, kind: Kind, span: Span) -> Options {
         let mut settings = self.integration();
+        settings.may_part = kind == Kind::Dynamic && self.may_part(system);
         settings.left = self.left_before(&system.scene);
         if let (Kind::Kinematic, Some(longest)) = (kind, self.kinematic_hmax()) {
             settings.h_max = self.pace.longest_step(longest);
@@ -184,10 +185,6 @@ impl Session {
         settings: &Options,
         (seen, watch): (&mut Seen, &mut dyn Watch),
     ) -> Result<(Trajectory, [f64; 2]), Vec<Diagnostic>> {
-        let settings = &Options {
-            may_part: kind == Kind::Dynamic && self.may_part(system),
-            ..settings.clone()
-        };
         let first = system.numbers.clone();
         let chosen = system.configuration.active.clone();
         let phase = Phase::begin();
