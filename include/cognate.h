@@ -537,9 +537,10 @@ bool cognate_options_skip(CognateOptions *options,
 // permitted error.
 COGNATE_API void cognate_options_accuracy(CognateOptions *options, bool wanted);
 
-// Measures how far off the results are, by a further integration of each dynamic simulation at a
-// larger permitted error, which costs about six tenths of it; "accuracy" in the record tells.
-COGNATE_API void cognate_options_measure(CognateOptions *options, bool wanted);
+// Says how many digits of the results to believe ("accuracy" in the record), from a further
+// integration of each dynamic simulation at a larger permitted error: about six tenths of its
+// time. Instead of bars of error, and they instead of it.
+COGNATE_API void cognate_options_digits(CognateOptions *options, bool wanted);
 
 // Asks for sets of results of all elements, or for what is asked for alone. Without a word a
 // session has all of them where the dataset asks for RESULTS, or where no column and no REQUEST is

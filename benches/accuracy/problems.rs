@@ -3,7 +3,7 @@
 use crate::requests::expressions;
 use crate::samples::Samples;
 use cognate::analysis::session::script::obey;
-use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::session::{Accuracy, Analysis, Options, Session};
 use cognate::analysis::watch::Unwatched;
 use cognate::analysis::work_limit::ProcessorClock;
 use cognate::dataset::command::{Script, Step};
@@ -142,14 +142,14 @@ fn chain() -> Problem {
 impl Problem {
     /// Runs the problem with bars, and compares; `None` where it does not come to its end.
     pub fn samples(&self, method: &str, request: f64, limit: f64) -> Option<Samples> {
-        let run = self.run((method, request, limit), true)?;
+        let run = self.run((method, request, limit), Accuracy::Bars)?;
         Some(self.compared(&run))
     }
 
     /// Runs the problem and lets it say how far off it is, and compares what it says of each column
     /// with the error that 19 of 20 of its numbers have; `None` as before.
     pub fn sentences(&self, method: &str, request: f64, limit: f64) -> Option<Samples> {
-        let run = self.run((method, request, limit), false)?;
+        let run = self.run((method, request, limit), Accuracy::Digits)?;
         let seconds = &run.record.seconds;
         let accuracy = run.record.accuracy.as_ref()?;
         let mut samples = Samples::of_run(seconds.accuracy / seconds.solve);
@@ -172,7 +172,7 @@ impl Problem {
     }
 
     /// Runs the problem, with bars beside every number, or with what it says of itself by default.
-    fn run(&self, (method, request, limit): (&str, f64, f64), has_bars: bool) -> Option<Run> {
+    fn run(&self, (method, request, limit): (&str, f64, f64), accuracy: Accuracy) -> Option<Run> {
         let mut model = self.model.clone();
         if self.kind == Kind::Static {
             (model.equilibrium.error, model.equilibrium.imbalance) = (Some(request), Some(request));
@@ -183,8 +183,7 @@ impl Problem {
             method: (self.kind == Kind::Integrated).then(|| method.into()),
             max_steps: Some(MAX_STEPS),
             limit: Some(limit),
-            accuracy: has_bars,
-            measure: !has_bars,
+            accuracy,
             ..Options::default()
         };
         let clock = ProcessorClock::start();

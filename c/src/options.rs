@@ -3,7 +3,7 @@
 use crate::door::{changed, door, quiet, text, usage};
 use crate::error::CognateError;
 use engine::Error;
-use engine::analysis::session::Options;
+use engine::analysis::session::{Accuracy, Options};
 use engine::model::ElementKind;
 use std::ffi::c_char;
 
@@ -140,20 +140,38 @@ pub unsafe extern "C" fn cognate_options_skip(
     }
 }
 
+/// Asks for one way to say how far off a run is, or does so no longer.
+fn ask(accuracy: &mut Accuracy, way: Accuracy, wanted: bool) {
+    if wanted {
+        *accuracy = way;
+    } else if *accuracy == way {
+        *accuracy = Accuracy::Unknown;
+    }
+}
+
 /// Gives every column bars of error (a column "name±" each), from a further run at a smaller
 /// permitted error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_options_accuracy(options: *mut CognateOptions, wanted: bool) {
     // SAFETY: NULL or a handle
-    unsafe { set(options, |o| o.options.accuracy = wanted) }
+    unsafe {
+        set(options, |o| {
+            ask(&mut o.options.accuracy, Accuracy::Bars, wanted)
+        })
+    }
 }
 
-/// Measures how far off the results are, by a further integration of each dynamic simulation at a
-/// larger permitted error, which costs about six tenths of it; "accuracy" in the record tells.
+/// Says how many digits of the results to believe ("accuracy" in the record), from a further
+/// integration of each dynamic simulation at a larger permitted error: about six tenths of its
+/// time. Instead of bars of error, and they instead of it.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn cognate_options_measure(options: *mut CognateOptions, wanted: bool) {
+pub unsafe extern "C" fn cognate_options_digits(options: *mut CognateOptions, wanted: bool) {
     // SAFETY: NULL or a handle
-    unsafe { set(options, |o| o.options.measure = wanted) }
+    unsafe {
+        set(options, |o| {
+            ask(&mut o.options.accuracy, Accuracy::Digits, wanted)
+        })
+    }
 }
 
 /// Asks for sets of results of all elements, or for what is asked for alone. Without a word a

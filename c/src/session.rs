@@ -9,7 +9,7 @@ use engine::Error;
 use engine::analysis::linear::Wanted;
 use engine::analysis::session::script::obey;
 use engine::analysis::session::state::Saved;
-use engine::analysis::session::{Options, Session, check_column};
+use engine::analysis::session::{Accuracy, Options, Session, check_column};
 use engine::analysis::watch::Watch;
 use engine::dataset::Dataset;
 use engine::dataset::command::{Simulate, SimulationKind};
@@ -306,7 +306,7 @@ pub unsafe extern "C" fn cognate_session_new(
             ..options.clone()
         };
         model.prepared.setup.solve.complete(&mut options);
-        let has_bars = options.accuracy;
+        let has_bars = options.accuracy == Accuracy::Bars;
         let mut session = Session::new(model.model.clone(), name, options);
         session.folders = model.folder().into_iter().collect();
         session.run.record.loads.clone_from(&model.prepared.loads);

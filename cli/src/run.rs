@@ -9,7 +9,7 @@ use super::setup::{self, Asked, Prepared, Setup};
 use super::{Exit, Failure, Outcome, interrupt, linear, output, piped, remark, say, summary};
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::state::{self, Saved};
-use cognate::analysis::session::{Chosen, Options, Session, check_column};
+use cognate::analysis::session::{Accuracy, Chosen, Options, Session, check_column};
 use cognate::analysis::watch::Watch;
 use cognate::analysis::work_limit::ProcessClock;
 use cognate::dataset::command::{Command, Script, SimulationKind, Step};
@@ -409,8 +409,11 @@ fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session 
         frames: args.output.need(&model, Format::Gra),
         body_rates: args.body_motion,
         only: args.only.clone(),
-        accuracy: args.accuracy,
-        measure: !args.no_accuracy,
+        accuracy: match (args.accuracy, args.no_accuracy) {
+            (true, _) => Accuracy::Bars,
+            (_, true) => Accuracy::Unknown,
+            _ => Accuracy::Digits,
+        },
         threads: Some(args.threads.unwrap_or(0)),
         ..Options::default()
     };

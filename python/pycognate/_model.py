@@ -47,11 +47,10 @@ class Options(TypedDict, total=False):
     method : str
         Method of integration (``"AUTO"`` chooses by itself).
     accuracy : bool
-        Give every column bars of error, from a further run at a smaller request.
-    measure : bool
-        Measure how far off the results are, by a further integration at a larger request, which
-        costs about six tenths of the run: `Run.accuracy` tells. Where left out: a run by itself does
-        so, unless a routine for USER would be called again; sessions and the runs of a sweep do not.
+        True: give every column bars of error, from a further run at a smaller request. False: say
+        nothing. Where left out a run by itself says how many digits to believe (`Run.accuracy`),
+        from a further integration at a larger request, which costs about six tenths of the run,
+        unless a routine for USER would be called again; sessions and the runs of a sweep do not.
     full : bool
         Sets of results of all elements. Where left out: if the dataset asks for RESULTS, and if
         nothing else is asked for, no column and no REQUEST (of a model of more than 400 elements
@@ -76,7 +75,6 @@ class Options(TypedDict, total=False):
     error: float
     method: str
     accuracy: bool
-    measure: bool
     full: bool
     frames: bool
     max_steps: int
@@ -106,8 +104,7 @@ def choices_of(model: Model, options: Options) -> dict[str, Any]:
         "columns": [],
         "error": None,
         "method": None,
-        "accuracy": False,
-        "measure": None,
+        "accuracy": None,
         "full": None,
         "frames": False,
         "max_steps": None,
@@ -444,7 +441,7 @@ class Model:
         Session
             The session, at time 0.
         """
-        options.setdefault("measure", False)
+        options.setdefault("accuracy", False)
         return Session(self, **options)
 
     def sweep(

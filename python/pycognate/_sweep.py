@@ -260,7 +260,7 @@ def sweep(
         measures = [measures]
     simulation = simulation_of(kind, end, None, steps, dtout)
     job = Job(
-        model, choices_of(model, {"measure": False, **options}), simulation, commands, list(parameters), list(measures)
+        model, choices_of(model, {"accuracy": False, **options}), simulation, commands, list(parameters), list(measures)
     )
     core = job.sweep()
     points = _points(design, parameters, runs, seed)

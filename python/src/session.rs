@@ -9,7 +9,7 @@ use cognate::Error;
 use cognate::analysis::linear::Wanted;
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::state::Saved;
-use cognate::analysis::session::{self, Options};
+use cognate::analysis::session::{self, Accuracy, Options};
 use cognate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use cognate::model::{ElementKind, SettingsStatement};
 use cognate::results::{Event, Status, json};
@@ -28,8 +28,7 @@ pub struct Choices {
     columns: Vec<String>,
     error: Option<f64>,
     method: Option<String>,
-    accuracy: bool,
-    measure: Option<bool>,
+    accuracy: Option<bool>,
     full: Option<bool>,
     frames: bool,
     max_steps: Option<usize>,
@@ -69,9 +68,12 @@ impl Choices {
             max_steps: self.max_steps,
             limit: self.limit,
             threads: self.threads,
-            accuracy: self.accuracy,
-            // a routine of the caller's is asked once for each instant, unless it may be asked again
-            measure: self.measure.unwrap_or(self.user.is_empty()),
+            accuracy: match self.accuracy {
+                Some(true) => Accuracy::Bars,
+                // a routine of the caller's is not called again without being asked for
+                None if self.user.is_empty() => Accuracy::Digits,
+                _ => Accuracy::Unknown,
+            },
             ..Options::default()
         };
         of.prepared.setup.solve.complete(&mut options);

@@ -55,7 +55,7 @@ def test_motions_of_markers_are_found_after_a_run(slider_crank):
 
 def test_bars_of_error_hold(falling):
     assert "believe" in falling.run(end=1.0, steps=10).accuracy
-    assert falling.run(end=1.0, steps=10, measure=False).accuracy is None
+    assert falling.run(end=1.0, steps=10, accuracy=False).accuracy is None
     run = falling.run(end=1.0, steps=10, accuracy=True)
     assert np.all(run.bars("ball.Z") >= 0)
     with pytest.raises(cg.ColumnError):

@@ -144,6 +144,10 @@ impl EnergyFlow {
     }
 }
 
+/// Share of the steps from which on what ended or shortened them is what sets their number, and not
+/// the request.
+pub(in crate::analysis) const SETS_STEPS: f64 = 0.25;
+
 /// Accepted steps that ended where they did for another reason than the permitted error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Limited {

@@ -4,7 +4,7 @@
 
 use crate::{requests, running};
 
-use cognate::analysis::session::Session;
+use cognate::analysis::session::{Accuracy, Session};
 use cognate::dataset::command::Script;
 use cognate::model::Model;
 use cognate::results::{self, csv, format::Style, res};
@@ -24,7 +24,7 @@ fn samples(problem: &str, method: &str, error: f64) -> Vec<(f64, f64)> {
         error: Some(error),
         columns: asked.clone(),
         method: Some(method.into()),
-        accuracy: true,
+        accuracy: Accuracy::Bars,
         ..Options::default()
     };
     let mut s = begin(model, problem, options);
@@ -85,7 +85,7 @@ const PENDULUM: &str = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2, QP=1,0
 
 fn judged(text: &str, columns: &[&str], analysis: Analysis, end: f64, error: f64) -> Session {
     let mut options = running::options(columns, error);
-    options.accuracy = true;
+    options.accuracy = Accuracy::Bars;
     let mut s = begin(running::model(text), "test", options);
     go(&mut s, analysis, end, 50);
     s
@@ -203,7 +203,7 @@ fn bars_of_an_equilibrium_hold_whatever_tolerance_is_asked_for() {
         (model.equilibrium.error, model.equilibrium.imbalance) = (Some(request), Some(request));
         let options = Options {
             columns: columns.clone(),
-            accuracy: true,
+            accuracy: Accuracy::Bars,
             ..Options::default()
         };
         let mut s = begin(model, "chain", options);
@@ -232,7 +232,7 @@ fn what_follows_a_companion_that_strayed_has_no_bar() {
     // more than the long simulation takes, less than its companion does
     let mut plain = begin(running::model(PENDULUM), "plain", options.clone());
     go(&mut plain, Analysis::Dynamic, 40.0, 40);
-    options.accuracy = true;
+    options.accuracy = Accuracy::Bars;
     let tried = plain.run.record.counts.steps + plain.run.record.counts.rejected_steps;
     options.max_steps = Some(tried as usize * 11 / 10);
     let mut s = begin(running::model(PENDULUM), "test", options);
@@ -270,7 +270,7 @@ fn bars_of_bdf_hold_at_every_request() {
     for k in 12..=32 {
         let request = 10_f64.powf(-0.25 * f64::from(k));
         let mut options = running::options_by(&columns, "BDF", request);
-        options.accuracy = true;
+        options.accuracy = Accuracy::Bars;
         let mut s = begin(running::model(text), "test", options);
         go(&mut s, Analysis::Dynamic, 2.0, 60);
         for column in columns {

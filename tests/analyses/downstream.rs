@@ -509,7 +509,7 @@ fn errors_lie_within_their_bars() {
         &format!("DIFF/1, IC=0.5, FUNCTION={k:?}*(DZ(20,11,11)-DIF(1))\n"),
     );
     let options = Options {
-        accuracy: true,
+        accuracy: cognate::analysis::session::Accuracy::Bars,
         ..options(&["DIF(1)"], 1e-5)
     };
     let mut s = begin(model(&text), "test", options);

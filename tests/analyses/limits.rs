@@ -1,6 +1,7 @@
 //! Limits of work: a run always ends, with what it has so far, and says where it was.
 
 use crate::running::{Analysis, Options, Session, begin, model, values};
+use cognate::analysis::session::Accuracy;
 use cognate::analysis::watch::{Unwatched, Watch};
 use cognate::results::Status;
 use std::time::{Duration, Instant};
@@ -86,7 +87,11 @@ fn every_method_lets_its_caller_look_after_a_few_evaluations_of_a_large_model() 
         );
     }
     for method in ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"] {
-        for (error, accuracy) in [(1e-3, false), (1e-9, false), (1e-6, true)] {
+        for (error, accuracy) in [
+            (1e-3, Accuracy::Unknown),
+            (1e-9, Accuracy::Digits),
+            (1e-6, Accuracy::Bars),
+        ] {
             let options = Options {
                 method: Some(method.to_string()),
                 error: Some(error),

@@ -3,7 +3,7 @@
 
 use crate::running;
 
-use cognate::analysis::session::Options;
+use cognate::analysis::session::{Accuracy, Options};
 use cognate::results::{ChannelAccuracy, Status};
 use running::{Analysis, Session, begin, go, model, session_by, try_to};
 use std::f64::consts::TAU;
@@ -26,7 +26,7 @@ fn measuring(text: &str, column: &str, method: &str, error: f64) -> Session {
         method: Some(method.into()),
         error: Some(error),
         max_steps: Some(300_000),
-        measure: true,
+        accuracy: Accuracy::Digits,
         ..Options::default()
     };
     begin(model(text), "test", options)

@@ -1,6 +1,7 @@
 //! A scene of known answer: a model of a few lines, how it is run, and what must come out.
 
 use crate::running::{self, Analysis, Options, Session};
+use cognate::analysis::session::Accuracy;
 use cognate::analysis::watch::Unwatched;
 use cognate::results::Status;
 
@@ -136,7 +137,7 @@ impl Scene {
             error: Some(error),
             method: method.map(str::to_owned),
             limit,
-            measure: true,
+            accuracy: Accuracy::Digits,
             ..Options::default()
         };
         let model = running::model(&self.text);

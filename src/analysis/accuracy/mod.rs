@@ -95,11 +95,8 @@ pub fn looser_request(error: f64, methods: &[String]) -> Option<f64> {
     let rows = METHODS.iter().filter(|m| worked(m.name));
     let order = rows.map(|m| m.order).min().unwrap_or(1);
     let larger = error * Scalar::powf(2.0, 0.75 * order as f64);
-    Some(larger.min(LARGEST_REQUEST)).filter(|larger| *larger >= LEAST_LOOSER * error)
+    Some(larger.min(LARGEST_REQUEST)).filter(|larger| *larger > error)
 }
-
-/// Least request of an integration that is to tell the error of a better one, over that one's.
-const LEAST_LOOSER: f64 = 2.0;
 
 /// Factors that make bars of what is known.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,22 +1,19 @@
 //! The companion of a session: the same simulations at another request, and the bars of error that
 //! the difference of the two gives.
 
-use super::Session;
 use super::kept::Starts;
 use super::simulate::Span;
+use super::{Accuracy, Session};
 use crate::analysis::accuracy::{
     Bars, Comparison, LEAST_SIZE, SHORTER_STEPS, TIGHTER_REST, companion_request, partners, safety,
     shifts,
 };
-use crate::analysis::trajectory::Trajectory;
+use crate::analysis::trajectory::{SETS_STEPS, Trajectory};
 use crate::analysis::warning::RunWarning;
 use crate::diagnostic::Error;
 use crate::results::{ChannelAccuracy, Kind, Run, Status};
 use std::collections::BTreeMap;
 use std::ops::Range;
-
-/// Share of steps that end at events from which on these, not the request, set the steps.
-const SHARE_OF_EVENTS: f64 = 0.3;
 
 /// Events over steps from which on few steps lie between two of them, and their number hardly
 /// follows the request.
@@ -99,7 +96,7 @@ impl Integrated {
     pub(super) fn of(kind: Kind, trajectory: &Trajectory, error: f64, span: Span) -> Self {
         let steps = trajectory.stats.steps as f64;
         let duration = trajectory.t.last().map_or(0.0, |t| t - span.start);
-        let at_events = trajectory.limited.events as f64 > SHARE_OF_EVENTS * steps;
+        let at_events = trajectory.limited.events as f64 > SETS_STEPS * steps;
         let is_driven = kind == Kind::Kinematic;
         Integrated {
             methods: trajectory.methods.iter().map(|m| m.1.clone()).collect(),
@@ -112,6 +109,11 @@ impl Integrated {
 }
 
 impl Integrated {
+    /// Returns the request, of what a method has integrated.
+    pub(super) fn error(&self) -> Option<f64> {
+        self.error
+    }
+
     /// Returns the names of the methods that worked.
     pub(super) fn methods(&self) -> &[String] {
         &self.methods
@@ -138,7 +140,7 @@ impl Session {
     /// Returns a companion that begins where the session is.
     fn new_companion(&self) -> Box<Session> {
         let mut options = self.options.clone();
-        (options.accuracy, options.measure, options.repeat) = (false, false, 1);
+        (options.accuracy, options.repeat) = (Accuracy::Unknown, 1);
         let mut companion = Session::new(self.model.clone(), &self.run.name, options);
         companion.hooks.clone_from(&self.hooks);
         companion.carried.clone_from(&self.carried);
@@ -217,6 +219,7 @@ impl Session {
             let others = others.map_or(0..0, |s| s.rows.clone());
             self.compare(&companion, rows, others, &largest);
         }
+        self.warn_of_errors();
         // one that ended otherwise would begin the next simulation elsewhere, and another one that
         // begins where this session is would know nothing of the errors so far
         self.strayed = !follows;

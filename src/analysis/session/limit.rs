@@ -6,7 +6,7 @@ use super::{Analysis, Session};
 use crate::analysis::look::Look;
 use crate::analysis::system::System;
 use crate::analysis::time::output::Output;
-use crate::analysis::trajectory::Trajectory;
+use crate::analysis::trajectory::{SETS_STEPS, Trajectory};
 use crate::analysis::watch::Watch;
 use crate::analysis::work_limit::{Limited, WorkLimit};
 use crate::diagnostic::{Diagnostic, Error, counted};
@@ -16,10 +16,6 @@ use crate::scene::layout::Layout;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Part of the steps from which on stability, rejections or events are called the reason for short
-/// steps.
-const TELLING_SHARE: f64 = 0.3;
 
 /// A phase of setting up a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -320,9 +316,7 @@ fn slow(stats: &Stats, events: usize) -> Option<Slow> {
         Slow::Rejected(share(stats.rejected, stats.steps + stats.rejected)),
     ];
     reasons.into_iter().find(|reason| match reason {
-        Slow::Stability(share) | Slow::Events(share) | Slow::Rejected(share) => {
-            *share > TELLING_SHARE
-        }
+        Slow::Stability(share) | Slow::Events(share) | Slow::Rejected(share) => *share > SETS_STEPS,
     })
 }
 

@@ -17,16 +17,16 @@
 //! Both are compared at outputs, [`MOST`] at most. What the second one was off by at the end of a
 //! simulation stays with it in the next one: errors of a run add up over its simulations.
 
-use super::Session;
 use super::companion::Pace;
 use super::phase::Phase;
 use super::simulate::Span;
+use super::{Accuracy, Session};
 use crate::analysis::accuracy::{
     Comparison, LEAST_SIZE, Safety, companion_request, looser_request, safety,
 };
 use crate::analysis::system::System;
 use crate::analysis::time::options::Options;
-use crate::analysis::trajectory::{Ended, Trajectory};
+use crate::analysis::trajectory::{Ended, SETS_STEPS, Trajectory};
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::expr::program::Program;
@@ -46,8 +46,6 @@ const FOLLOWS: f64 = 0.85;
 const NEAR: f64 = 0.1;
 /// Change of the number of steps up to which two integrations have the same steps.
 const ALIKE: f64 = 0.1;
-/// Share of the steps from which on it is stability, or rounding, that sets them.
-const LIMITED: f64 = 0.25;
 /// Steps of a further integration over those of the run, at most.
 const MOST_STEPS: usize = 4;
 /// Error over the request from which on it is told that errors have added up.
@@ -186,7 +184,7 @@ impl Session {
     /// Returns whether the error of a simulation over time is to be measured: what motions alone
     /// move is integrated by nothing.
     pub(super) fn measures(&self, kind: Kind) -> bool {
-        self.options.measure && !self.options.accuracy && kind == Kind::Dynamic
+        self.options.accuracy == Accuracy::Digits && kind == Kind::Dynamic
     }
 
     /// Takes what the last simulation was off by, if the next one begins where it has ended.
@@ -230,7 +228,8 @@ impl Session {
         }
         match found {
             Some(other) => {
-                off = Some(self.note_measured(measured, &other));
+                self.note_measured(measured, &other);
+                off = self.warn_of_errors();
                 self.beside = other.beside;
             }
             None if watch.interrupted() => {}
@@ -275,13 +274,14 @@ impl Session {
         watch: &mut dyn Watch,
     ) -> Option<Other> {
         let trajectory = measured.trajectory;
+        // some hundred steps more are nothing in a short run
+        let attempted = trajectory.stats.steps + trajectory.stats.rejected;
         let settings = &Options {
             error: request,
             h_initial: measured.settings.h_initial.map(|h| h * pace.steps),
             h_max: pace.longest_step(measured.settings.h_max),
             left: None,
-            max_steps: (measured.settings.max_steps)
-                .min(MOST_STEPS * (trajectory.stats.steps + trajectory.stats.rejected + MOST)),
+            max_steps: (measured.settings.max_steps).min(MOST_STEPS * attempted.max(MOST)),
             ..measured.settings.clone()
         };
         // the results are left alone
@@ -333,9 +333,8 @@ impl Session {
         })
     }
 
-    /// Notes in the record what the difference to a further integration says, and warns where that
-    /// is much; returns the largest error of a column over its size.
-    fn note_measured(&mut self, measured: &Measured<'_>, other: &Other) -> f64 {
+    /// Notes in the record what the difference to a further integration says.
+    fn note_measured(&mut self, measured: &Measured<'_>, other: &Other) {
         let asked = measured.settings.error;
         let of_method = safety(self.last.methods());
         // the further integration is off by so many times the error of the run
@@ -362,8 +361,6 @@ impl Session {
         accuracy.companions.push(other.request);
         let columns = sampled.columns.iter().map(|&k| &self.run.columns[k]);
         let places = accuracy.places(columns);
-        let mut worst: Option<(f64, ChannelAccuracy)> = None;
-        let mut most: f64 = 0.0;
         let both = sampled.values.iter().zip(&other.sampled.values);
         for ((place, (own, others)), &of_unit) in places.into_iter().zip(both).zip(&sizes) {
             let own: Vec<f64> = pairs.iter().map(|[k, _]| own[*k]).collect();
@@ -372,20 +369,28 @@ impl Session {
             let channel = &mut accuracy.channels[place];
             let size = largest(&own).max(LEAST_SIZE * of_unit);
             channel.see(&found.bars, size, found.lost_from);
-            let off = channel.usual / of_method.differences;
-            most = most.max(off);
-            let told = channel.lost_from.is_some() || off > TOLD_OF_SIZE.max(TOLD_REQUESTS * asked);
-            if told && worst.as_ref().is_none_or(|(most, _)| off > *most) {
-                worst = Some((off, channel.clone()));
-            }
         }
-        if let Some((off, channel)) = worst {
+    }
+
+    /// Warns where errors have added up, as has been measured; returns the error of the column that
+    /// is farthest off, over its size, if anything has been integrated.
+    pub(super) fn warn_of_errors(&mut self) -> Option<f64> {
+        let asked = self.last.error()?;
+        let of_method = safety(self.last.methods()).differences;
+        let channels = &self.run.record.accuracy.as_ref()?.channels;
+        let told = |c: &&ChannelAccuracy| {
+            let off = c.usual / of_method;
+            c.lost_from.is_some() || off > TOLD_OF_SIZE.max(TOLD_REQUESTS * asked)
+        };
+        let by_size = |a: &&ChannelAccuracy, b: &&ChannelAccuracy| a.usual.total_cmp(&b.usual);
+        let worst = channels.iter().max_by(by_size)?.usual / of_method;
+        if let Some(channel) = channels.iter().filter(told).max_by(by_size).cloned() {
             self.warn(RunWarning::ErrorsAddUp {
+                requests: channel.usual / of_method / asked,
                 channel,
-                requests: off / asked,
             });
         }
-        most
+        Some(worst)
     }
 }
 
@@ -394,7 +399,7 @@ impl Session {
 /// stability limits is better than its request, and below rounding no step is.
 fn differ(own: &Trajectory, other: &Other) -> bool {
     let limited = own.stats.stability_limited + own.stats.below_rounding;
-    let limited = limited as f64 > LIMITED * own.stats.steps as f64;
+    let limited = limited as f64 > SETS_STEPS * own.stats.steps as f64;
     let ratio = other.steps as f64 / own.stats.steps.max(1) as f64;
     limited || (ratio - 1.0).abs() > ALIKE
 }

@@ -88,6 +88,19 @@ pub enum Analysis {
     InitialConditions,
 }
 
+/// The ways in which a run may say how far off it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Accuracy {
+    /// not at all
+    #[default]
+    Unknown,
+    /// in a sentence, how many digits to believe: from one further integration of each dynamic
+    /// simulation, mostly at a larger request, which then costs about six tenths of it
+    Digits,
+    /// beside every number, by bars of error: from further runs at other requests
+    Bars,
+}
+
 /// Options of solving, beyond what the model says. `None`: as the model says, else our default.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
@@ -128,11 +141,8 @@ pub struct Options {
     /// threads on which mechanisms that nothing couples are integrated; results do not depend on
     /// it. `None`: one; 0: one for each processor
     pub threads: Option<usize>,
-    /// give every column bars of error, from further runs at other requests
-    pub accuracy: bool,
-    /// measure how far off results are, by one further integration of each dynamic simulation at a
-    /// larger request, which costs about six tenths of it; `accuracy` says more
-    pub measure: bool,
+    /// how a run says how far off it is
+    pub accuracy: Accuracy,
     /// keep the states of all rows: columns may then be named after a simulation, see
     /// [`Session::add_column`]
     pub keep_states: bool,

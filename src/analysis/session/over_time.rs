@@ -6,7 +6,6 @@ use super::growth::{Growth, Looks};
 use super::measured::{Measured, Sampled};
 use super::outcome::counts;
 use super::phase::Phase;
-use super::ranges::Ranges;
 use super::rows::{Follower, Seen};
 use super::simulate::Span;
 use super::stop_reason::StopReason;
@@ -15,7 +14,7 @@ use crate::analysis::system::System;
 use crate::analysis::time::continuation::Continuation;
 use crate::analysis::time::options::{self, Options};
 use crate::analysis::time::{dynamics, kinematics};
-use crate::analysis::trajectory::{Ended, Takeover, Trajectory};
+use crate::analysis::trajectory::{Ended, SETS_STEPS, Takeover, Trajectory};
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::diagnostic::{Diagnostic, counted};
@@ -24,7 +23,6 @@ use crate::model::ElementKind;
 use crate::numeric::{Ode, noise};
 use crate::results::{self, Event, Kind, Status};
 use crate::scene::layout::Layout;
-use std::ops::Range;
 
 impl Session {
     /// Runs a kinematic or dynamic simulation and adds its rows to the run.
@@ -85,7 +83,7 @@ impl Session {
         let mut off = None;
         if let (Some(start), Some(sampled)) = (start, &seen.sampled)
             && !settles
-            && moves(system, &seen.ranges, &typical)
+            && (system.scene.layout.n_x > 0 || !seen.ranges.rest(&typical))
         {
             let measured = Measured {
                 kind,
@@ -128,8 +126,7 @@ impl Session {
         if stopped.is_some_and(StopReason::is_lock) {
             self.warn_of_locks();
         }
-        let moves = !seen.ranges.stood_still(typical);
-        self.account(&trajectory.energy, moves);
+        self.account(&trajectory.energy, !seen.ranges.stand(typical));
         if !matches!(stopped, Some(StopReason::RunsAway { .. })) {
             let stops = matches!(stopped, Some(StopReason::Method { .. }));
             self.warn_of_growth(seen.looks.growth(system, stops));
@@ -399,23 +396,19 @@ impl Session {
     /// Warns where stability, not the error asked for, set the steps of an explicit method.
     fn warn_of_stability(&mut self, trajectory: &Trajectory) {
         let (limited, steps) = (trajectory.stats.stability_limited, trajectory.stats.steps);
-        if limited >= TOLD_STEPS && limited as f64 > TOLD_SHARE * steps as f64 {
+        if limited >= TOLD_STEPS && limited as f64 > SETS_STEPS * steps as f64 {
             self.warn(RunWarning::StabilityLimited { limited, steps });
         }
     }
 }
 
-/// Way of a coordinate, or velocity, over what is typical of it, up to which everything rests.
-const RESTING: f64 = 1e-9;
 /// Request from which on rounding may add up to more within any number of steps.
 const FINE_REQUEST: f64 = 1e-7;
 /// Fewest steps whose roundings add up.
 const FEWEST_STEPS: usize = 100;
 /// Error of the balance of energy, over all energy, from which on it is told.
 const TOLD_ENERGY: f64 = 0.2;
-/// Part of the steps, from which on those that stability held short are told.
-const TOLD_SHARE: f64 = 0.25;
-/// The least number of them that is told.
+/// The least number of steps held short by stability that is told.
 const TOLD_STEPS: usize = 200;
 
 /// Returns the place of a simulation in the record, but for its times.
@@ -427,15 +420,6 @@ fn recorded(kind: Kind, start: f64, trajectory: &Trajectory) -> results::Simulat
         counts: counts(&trajectory.stats, trajectory.limited),
         ..results::Simulation::new(kind, start)
     }
-}
-
-/// Returns whether anything has moved by more than errors move what rests; `typical`: magnitudes of
-/// the unknowns.
-fn moves(system: &System, ranges: &Ranges, typical: &[f64]) -> bool {
-    let l = system.scene.layout;
-    let begin = l.y().start;
-    let of = |places: Range<usize>| &typical[places.start - begin..places.end - begin];
-    l.n_x > 0 || ranges.reach([of(l.q()), of(l.v())]) > RESTING
 }
 
 /// Returns whether a mechanism without freedom has states or a past all the same: these go on by

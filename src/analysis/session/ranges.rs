@@ -3,10 +3,9 @@
 use crate::scene::layout::Layout;
 use std::ops::Range;
 
-/// Range of a coordinate over its size, and over what is typical of it, in which it stands still:
+/// Way of a coordinate, or velocity, over what is typical of it, up to which everything rests:
 /// as rounding and the permitted error of a method move it where forces balance.
-const STILL_OF_SIZE: f64 = 1e-9;
-const STILL_OF_TYPICAL: f64 = 1e-12;
+const RESTING: f64 = 1e-9;
 
 /// Least and largest value of each coordinate and velocity of a simulation, seen at the ends of
 /// steps: outputs change nothing.
@@ -44,23 +43,26 @@ impl Ranges {
     }
 
     /// Returns whether coordinates have been seen and none has moved by more than rounding and
-    /// permitted errors move what is at rest; `typical`: magnitudes of the coordinates.
-    pub fn stood_still(&self, typical: &[f64]) -> bool {
-        let stands = |([low, high], typical): (&[f64; 2], &f64)| {
-            let size = STILL_OF_SIZE * low.abs().max(high.abs());
-            high - low <= size.max(STILL_OF_TYPICAL * typical)
-        };
-        !self.coordinates.is_empty() && self.coordinates.iter().zip(typical).all(stands)
+    /// permitted errors move what is at rest; `typical`: magnitudes of the method's unknowns.
+    pub fn stand(&self, typical: &[f64]) -> bool {
+        let ways = self.coordinates.iter().map(|[low, high]| high - low);
+        let mut ways = ways.zip(self.of(typical, self.layout.q()));
+        !self.coordinates.is_empty() && ways.all(|(way, typical)| way <= RESTING * typical)
     }
 
-    /// Returns the largest way of a coordinate, or velocity, over what is typical of it; `typical`:
-    /// magnitudes of the coordinates and of the velocities.
-    pub fn reach(&self, typical: [&[f64]; 2]) -> f64 {
-        let ways = self.coordinates.iter().map(|[low, high]| high - low);
+    /// Returns whether nothing has a velocity, either: small and fast swings are a motion, though
+    /// the permitted error moves what stands so fast, too.
+    pub fn rest(&self, typical: &[f64]) -> bool {
         let speeds = self.velocities.iter();
         let speeds = speeds.map(|[low, high]| low.abs().max(high.abs()));
-        let all = ways.zip(typical[0]).chain(speeds.zip(typical[1]));
-        all.fold(0.0, |most, (x, typical)| most.max(x / typical))
+        let mut speeds = speeds.zip(self.of(typical, self.layout.v()));
+        self.stand(typical) && speeds.all(|(speed, typical)| speed <= RESTING * typical)
+    }
+
+    /// Returns the part of the method's unknowns that has a place in the numbers of a state.
+    fn of<'a>(&self, unknowns: &'a [f64], place: Range<usize>) -> &'a [f64] {
+        let begin = self.layout.y().start;
+        &unknowns[place.start - begin..place.end - begin]
     }
 
     /// Returns whether any velocity changes by more than some error: below it nothing can be told.

@@ -7,15 +7,16 @@
 
 use super::growth::Looks;
 use super::measured::Sampled;
+use super::phase::Phase;
 use super::ranges::Ranges;
 use super::spline_range::Readings;
 use super::tilts::Tilts;
-use super::{Session, columns};
+use super::{Accuracy, Session, columns};
 use crate::analysis::system::System;
 use crate::analysis::trajectory::Trajectory;
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
-use crate::clock::{Moment, Wait};
+use crate::clock::Wait;
 use crate::expr::program::{Program, Work};
 use crate::numeric::Stats;
 use crate::results::{Kind, Run};
@@ -47,7 +48,7 @@ pub(super) struct Seen {
     pub tilts: Tilts,
     /// what another integration is to be compared with
     pub sampled: Option<Sampled>,
-    /// time that seeing took, in s
+    /// time that seeing took, without that of translation, in s
     pub seconds: f64,
 }
 
@@ -121,7 +122,8 @@ impl Session {
         self.run.end();
         self.gaps.look(&self.run, n);
         // bars of error are found when all rows are there
-        if let Some(receiver) = self.receiver.as_mut().filter(|_| !self.options.accuracy) {
+        let has_bars = self.options.accuracy == Accuracy::Bars;
+        if let Some(receiver) = self.receiver.as_mut().filter(|_| !has_bars) {
             receiver(&mut self.run);
         }
     }
@@ -299,7 +301,7 @@ impl Watch for Follower<'_> {
     fn collect(&mut self, system: &System, trajectory: &mut Trajectory) {
         let n = trajectory.rows.len();
         let wait = self.session.receiver.is_none()
-            || self.session.options.accuracy
+            || self.session.options.accuracy == Accuracy::Bars
             || n < ROWS_AT_ONCE && (n < 2 || !self.wait.is_over());
         if wait {
             return;
@@ -307,9 +309,9 @@ impl Watch for Follower<'_> {
         // the last state may still change
         let until = trajectory.t.len() - 1;
         if self.is_kept {
-            let clock = Moment::now();
+            let phase = Phase::begin();
             self.session.see(self.seen, system, trajectory, until);
-            self.seen.seconds += clock.elapsed().as_secs_f64();
+            self.seen.seconds += phase.elapsed().0;
         } else {
             trajectory.release(until);
         }

@@ -4,7 +4,7 @@ use super::companion::Integrated;
 use super::kept::{Kept, Prepared};
 use super::limit::SetUp;
 use super::phase::Phase;
-use super::{Analysis, DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, STATIC, Session};
+use super::{Accuracy, Analysis, DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, STATIC, Session};
 use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
 use crate::analysis::time::drives;
@@ -45,7 +45,7 @@ impl Session {
         output: Output,
         watch: &mut dyn Watch,
     ) -> Result<Status, Error> {
-        if !self.options.accuracy {
+        if self.options.accuracy != Accuracy::Bars {
             return self.simulate_alone(analysis, end, output, watch);
         }
         let begun = self.begin_companion();

@@ -1,7 +1,7 @@
 //! States of rows that are kept, so that columns can be named after a simulation.
 
 use super::kept::Starts;
-use super::{Session, columns};
+use super::{Accuracy, Session, columns};
 use crate::analysis::system::System;
 use crate::diagnostic::Error;
 use crate::model::Model;
@@ -74,7 +74,7 @@ impl Session {
         if kept != self.run.rows() || self.run.released > 0 {
             return late("their states have not been kept; Options::keep_states keeps them");
         }
-        if self.options.accuracy {
+        if self.options.accuracy == Accuracy::Bars {
             return late("their bars of error would be missing");
         }
         if self.states.iter().any(|s| *s.model != self.model) {
