@@ -8,7 +8,8 @@
 //! y(a + (b − a) x) = Σ (7 over i) cᵢ xⁱ (1 − x)⁷⁻ⁱ,   0 ≤ x ≤ 1        min cᵢ ≤ y ≤ max cᵢ
 //! ```
 //!
-//! The bound shrinks with the square of b − a towards the range of y. Rounding is not included.
+//! The bound shrinks with the square of b − a towards the range of y. So do those of the rates,
+//! whose control points are 7 (cᵢ₊₁ − cᵢ)/h over the whole step. Rounding is not included.
 //!
 //! Source: Farouki, The Bernstein polynomial basis: a centennial retrospective, Computer Aided
 //! Geometric Design 29 (2012).
@@ -27,6 +28,8 @@ pub struct Courses {
     h: f64,
     /// control points over the whole step   (n)
     points: Vec<[f64; NODES]>,
+    /// those of the rates   (n)
+    rates: Vec<[f64; DEGREE]>,
 }
 
 impl Courses {
@@ -49,29 +52,42 @@ impl Courses {
             let at: [f64; NODES] = std::array::from_fn(|i| values[i][k]);
             control_points(&nodes, at)
         }));
+        let of_rate =
+            |p: &[f64; NODES]| std::array::from_fn(|i| DEGREE as f64 * (p[i + 1] - p[i]) / h);
+        self.rates.clear();
+        self.rates.extend(self.points.iter().map(of_rate));
     }
 
-    /// Returns bounds of the `k`-th unknown between two times of the step.
-    pub fn bound(&self, k: usize, from: f64, to: f64) -> Interval {
+    /// Returns bounds of the `k`-th unknown, and of its rate, between two times of the step.
+    pub fn bound(&self, k: usize, from: f64, to: f64) -> [Interval; 2] {
         let [a, b] = [from, to].map(|t| ((t - self.t0) / self.h).clamp(0.0, 1.0));
-        let mut points = self.points[k];
-        // up to b, then of that from a on
-        part(&mut points, b, true);
-        if a > 0.0 {
-            part(&mut points, a / b, false);
-        }
-        let least = points.iter().fold(f64::INFINITY, |m, &c| m.min(c));
-        let most = points.iter().fold(f64::NEG_INFINITY, |m, &c| m.max(c));
-        match points.iter().all(|c| c.is_finite()) {
-            true => Interval::between(least, most),
-            false => Interval::ANY,
-        }
+        [over(self.points[k], a, b), over(self.rates[k], a, b)]
+    }
+}
+
+/// Returns bounds of a polynomial between two parts of its interval.
+fn over<const N: usize>(mut points: [f64; N], a: f64, b: f64) -> Interval {
+    // up to b, then of that from a on
+    part(&mut points, b, true);
+    if a > 0.0 {
+        part(&mut points, a / b, false);
+    }
+    hull(&points)
+}
+
+/// Returns the bounds that control points are.
+pub fn hull(points: &[f64]) -> Interval {
+    let least = points.iter().fold(f64::INFINITY, |m, &c| m.min(c));
+    let most = points.iter().fold(f64::NEG_INFINITY, |m, &c| m.max(c));
+    match points.iter().all(|c| c.is_finite()) {
+        true => Interval::between(least, most),
+        false => Interval::ANY,
     }
 }
 
 /// Keeps the control points of a polynomial over the part of its interval up to `x`, or from there
 /// on (de Casteljau).
-fn part(points: &mut [f64; NODES], x: f64, before: bool) {
+fn part<const N: usize>(points: &mut [f64; N], x: f64, before: bool) {
     let n = points.len();
     for level in 1..n {
         if before {
@@ -133,19 +149,28 @@ mod tests {
             (0.0, 0.5),
             (0.9, 1.0),
         ] {
-            let bound = courses.bound(1, t0 + h * from, t0 + h * to);
+            let [bound, rate] = courses.bound(1, t0 + h * from, t0 + h * to);
             let mut range = [f64::INFINITY, f64::NEG_INFINITY];
             for j in 0..=200 {
                 let y = p(from + (to - from) * f64::from(j) / 200.0);
                 range = [range[0].min(y), range[1].max(y)];
             }
             assert!(bound.lo <= range[0] + 1e-12 && range[1] - 1e-12 <= bound.hi);
+            // the rate, by differences of what has just been seen
+            let slope = (p(to) - p(from)) / (to - from) / h;
+            assert!(
+                rate.lo - 1e-9 <= slope && slope <= rate.hi + 1e-9,
+                "{rate:?} {slope}"
+            );
             let more = (range[0] - bound.lo).max(bound.hi - range[1]);
             assert!(
                 more < 30.0 * (to - from) * (to - from),
                 "{from} {to} {more}"
             );
-            assert_eq!(courses.bound(0, t0, t0 + h), Interval::between(0.0, 0.0));
+            assert_eq!(
+                courses.bound(0, t0, t0 + h),
+                [Interval::between(0.0, 0.0); 2]
+            );
         }
     }
 }

@@ -148,11 +148,12 @@ impl Locator {
         self.times.push(t0);
         let mut found = false;
         let regular = |i: usize| t0 + (t1 - t0) * i as f64 / (SAMPLES + 1) as f64;
-        let (mut next, mut named) = (1, named.iter().copied().peekable());
+        let inside = named.iter().copied().filter(|&t| t > t0);
+        let (mut next, mut named) = (1, inside.peekable());
         for i in 1.. {
             let regular = if next > SAMPLES { t1 } else { regular(next) };
             let before = named.next_if(|&t| t < regular);
-            let t = before.filter(|&t| t > t0).unwrap_or(regular);
+            let t = before.unwrap_or(regular);
             next += usize::from(t == regular);
             g(t, &mut self.values[i])?;
             self.times.push(t);

@@ -3,8 +3,9 @@
 //!
 //! ```text
 //! [t, t + h]   shown to be free                 →  go on behind it with 2h
+//!              shown to hold an event           →  look closely: at its ends
 //!              else, longer than the shortest   →  h/2
-//!              else                             →  look closely: at its ends
+//!              else                             →  look closely
 //! ```
 //!
 //! A stretch that is shown to be free is so however short an event would be. The question decides
@@ -25,6 +26,23 @@ pub struct Search {
 /// Stretches that a search looks at, at most: forty halvings to the shortest and back, ten times.
 const MOST_STRETCHES: usize = 400;
 
+/// The knowledge of a stretch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// nothing happens in it
+    Free,
+    /// something does: it need not be divided
+    Event,
+    /// neither
+    Nothing,
+}
+
+impl From<bool> for Shown {
+    fn from(is_free: bool) -> Self {
+        if is_free { Self::Free } else { Self::Nothing }
+    }
+}
+
 /// The answer to a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found<T> {
@@ -35,13 +53,13 @@ pub struct Found<T> {
     pub event: Option<T>,
 }
 
-/// Searches from `from` to `end`: `is_free(a, b)` shows that nothing happens between two times,
-/// `event(a, b)` says what does in a stretch that is as short as permitted.
-pub fn first<C, T>(
+/// Searches from `from` to `end`: `show(a, b)` says what is shown of the stretch between two times,
+/// `event(a, b)` what happens in one that is shown to hold an event, or as short as permitted.
+pub fn first<C, T, S: Into<Shown>>(
     course: &mut C,
     (from, end): (f64, f64),
     search: Search,
-    is_free: impl Fn(&mut C, f64, f64) -> bool,
+    show: impl Fn(&mut C, f64, f64) -> S,
     event: impl Fn(&mut C, f64, f64) -> Option<T>,
 ) -> Found<T> {
     let (mut from, mut h) = (from, search.first);
@@ -50,16 +68,19 @@ pub fn first<C, T>(
             break;
         }
         let to = (from + h).min(end);
-        if is_free(course, from, to) {
+        let shown = show(course, from, to).into();
+        if shown == Shown::Free {
             from = to;
             h *= 2.0;
-        } else if h > search.shortest {
+        } else if shown == Shown::Nothing && h > search.shortest {
             h *= 0.5;
         } else if let Some(found) = event(course, from, to) {
             return Found {
                 free_to: from,
                 event: Some(found),
             };
+        } else if h > search.shortest {
+            h *= 0.5;
         } else {
             from = to;
         }

@@ -82,6 +82,13 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
         }
     }
     #[inline(always)]
+    fn from_steps(re: S) -> Self {
+        Self {
+            re,
+            eps: [re.rate_of_steps(); N],
+        }
+    }
+    #[inline(always)]
     fn is_value_only(&self) -> bool {
         self.eps.iter().all(Scalar::is_known_zero)
     }
@@ -90,10 +97,18 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
 operators!([const N: usize, S: Scalar] Dual<N, S>);
 
 impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
+    const BOUNDS: bool = S::BOUNDS;
+
     value_part_comparisons!(S);
 
     #[inline(always)]
     fn select(mask: S::Mask, yes: Self, no: Self) -> Self {
+        yes.map2(no, S::select(mask, yes.re, no.re), |x, y| {
+            S::select_rate(mask, x, y)
+        })
+    }
+    #[inline(always)]
+    fn select_of_compared(mask: S::Mask, yes: Self, no: Self) -> Self {
         yes.map2(no, S::select(mask, yes.re, no.re), |x, y| {
             S::select(mask, x, y)
         })

@@ -201,6 +201,8 @@ impl Interval {
 operators!([] Interval);
 
 impl Scalar for Interval {
+    const BOUNDS: bool = true;
+
     type Mask = Answer;
 
     fn constant(x: f64) -> Self {
@@ -236,6 +238,20 @@ impl Scalar for Interval {
             Yes => yes,
             No => no,
             Perhaps => yes.hull(no),
+        }
+    }
+
+    fn select_rate(mask: Answer, yes: Self, no: Self) -> Self {
+        match mask {
+            Yes => yes,
+            No => no,
+            Perhaps => Self::ANY,
+        }
+    }
+    fn rate_of_steps(self) -> Self {
+        match self.known() {
+            Some(_) => Self::zero(),
+            None => Self::ANY,
         }
     }
 

@@ -110,6 +110,10 @@ impl<S: Scalar> Jet<S> {
         Self::new(value, S::zero(), S::zero())
     }
     #[inline(always)]
+    fn from_steps(value: S) -> Self {
+        Self::new(value, value.rate_of_steps(), S::zero())
+    }
+    #[inline(always)]
     fn is_value_only(&self) -> bool {
         self.first.is_known_zero() && self.second.is_known_zero()
     }

@@ -114,6 +114,9 @@ pub trait Scalar:
     /// copy of it, and one over duals.
     const CALLS_FUNCTIONS: bool = false;
 
+    /// Tells whether the number bounds values: a selection between two numbers may be undecided.
+    const BOUNDS: bool = false;
+
     /// Creates a number that depends on nothing.
     fn constant(x: f64) -> Self;
     /// Returns zero.
@@ -153,6 +156,25 @@ pub trait Scalar:
             Some(false) => no(),
             None => Self::select(mask, yes(), no()),
         }
+    }
+
+    /// Selects like [`Scalar::select`] between the two numbers that are compared: the result bends
+    /// where they are equal, and does not jump.
+    #[inline(always)]
+    fn select_of_compared(mask: Self::Mask, yes: Self, no: Self) -> Self {
+        Self::select(mask, yes, no)
+    }
+    /// Selects between the rates of two numbers; bounds have none where that is not decided, since
+    /// what is selected may jump.
+    #[inline(always)]
+    fn select_rate(mask: Self::Mask, yes: Self, no: Self) -> Self {
+        Self::select(mask, yes, no)
+    }
+    /// Returns the rate of a value that is constant but for jumps: zero, or, of bounds that hold
+    /// several such values, none.
+    #[inline(always)]
+    fn rate_of_steps(self) -> Self {
+        Self::zero()
     }
 
     /// Multiplies by a plain number.
@@ -561,15 +583,15 @@ macro_rules! elementary_functions {
         }
         #[inline]
         fn trunc(self) -> Self {
-            Self::from_value(self.value_part().trunc())
+            Self::from_steps(self.value_part().trunc())
         }
         #[inline]
         fn round(self) -> Self {
-            Self::from_value(self.value_part().round())
+            Self::from_steps(self.value_part().round())
         }
         #[inline]
         fn floor(self) -> Self {
-            Self::from_value(self.value_part().floor())
+            Self::from_steps(self.value_part().floor())
         }
         #[inline]
         fn rem(self, other: Self) -> Self {
@@ -577,7 +599,7 @@ macro_rules! elementary_functions {
             let (a, b) = (self.value_part(), other.value_part());
             let exact = a.rem(b);
             let turns = ((a - exact) / b).round();
-            let mut result = self - other * Self::from_value(turns);
+            let mut result = self - other * Self::from_steps(turns);
             *result.value_part_mut() = exact;
             result
         }

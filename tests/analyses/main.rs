@@ -31,6 +31,7 @@ mod doors;
 mod downstream;
 mod energy;
 mod flutter;
+mod gates;
 mod integrators;
 mod limits;
 mod linear;

@@ -6,14 +6,15 @@
 
 use super::algebraic_loops::AlgebraicLoops;
 use super::sliding::Slides;
-use crate::expr::program::{Program, Work};
+use crate::expr::program::{Builder, Folding, Program, Work};
 use crate::model::Level;
-use crate::scalar::Interval;
+use crate::scalar::{Dual, Interval, Scalar};
 use crate::scene::equations::Unsupported;
 use crate::scene::layout::{Layout, LongRow};
 use crate::scene::programs::{self, Switching};
 use crate::scene::recorder::Recorder;
 use crate::scene::{Scene, Source};
+use std::collections::BTreeMap;
 
 /// Angle by which an angle that decides a branch may turn within a step: a quarter of a turn, in
 /// which a step is looked at several times.
@@ -50,9 +51,11 @@ pub struct Branches {
     is_aside: bool,
     /// values of the switches at a look aside   (n_switches)
     values_aside: Vec<f64>,
-    /// the row, with bounds of what moves
-    bounded_row: Vec<Interval>,
-    bound_work: Work<Interval>,
+    /// the row, with bounds of what moves and of its rates
+    bounded_row: Vec<Dual<1, Interval>>,
+    bound_work: Work<Dual<1, Interval>>,
+    /// the programs of single switches that bounds of all have not decided
+    single: BTreeMap<usize, (Program, Work<Dual<1, Interval>>)>,
 }
 
 impl Branches {
@@ -89,6 +92,7 @@ impl Branches {
             values_aside: vec![0.0; n],
             bounded_row: Vec::new(),
             bound_work: Work::default(),
+            single: BTreeMap::new(),
         })
     }
 
@@ -282,9 +286,9 @@ impl Branches {
         }
     }
 
-    /// Returns which switching functions read the time and can be bounded, and the unknowns that
-    /// these read: nothing bounds values of the past, closures, or the unknowns of loops.
-    pub(super) fn timed(&self) -> (Vec<usize>, Vec<usize>) {
+    /// Returns which switching functions can be bounded, and the unknowns that these read: nothing
+    /// bounds values of the past, closures, or the unknowns of loops.
+    pub(super) fn bounded(&self) -> (Vec<usize>, Vec<usize>) {
         let Some(Switching { switches, .. }) = &self.switching else {
             return Default::default();
         };
@@ -293,36 +297,52 @@ impl Branches {
             .chain(layout.external())
             .chain(self.row.more())
             .collect();
-        let timed = switches.outputs_reading(&[Layout::TIME]);
         let unbound = switches.outputs_reading(&unbound);
-        let timed: Vec<usize> = (0..timed.len())
-            .filter(|&k| timed[k] && !unbound[k])
-            .collect();
-        let read = |&k: &usize| !timed.is_empty() && switches.reads(layout.y_at(k));
+        let bounded: Vec<usize> = (0..unbound.len()).filter(|&k| !unbound[k]).collect();
+        let read = |&k: &usize| !bounded.is_empty() && switches.reads(layout.y_at(k));
         let unknowns = (0..layout.n_y()).filter(read).collect();
-        (timed, unknowns)
+        (bounded, unknowns)
     }
 
-    /// Bounds the switching functions, with branches held as they are, over bounds of the time and
-    /// of the unknowns that [`timed`](Self::timed) names.   (n_switches)
-    pub(super) fn bound(
+    /// Takes bounds of the time and of the unknowns that [`bounded`](Self::bounded) names, with
+    /// their rates; branches are held as they are.
+    pub(super) fn take_bounds(
         &mut self,
         numbers: &[f64],
         time: Interval,
-        unknowns: impl Iterator<Item = (usize, Interval)>,
-        bounds: &mut [Interval],
+        unknowns: impl Iterator<Item = (usize, [Interval; 2])>,
     ) {
         self.put(numbers);
         self.bounded_row.clear();
-        let row = self.numbers.iter().map(|&x| Interval::between(x, x));
+        let row = self.numbers.iter().map(|&x| Dual::constant(x));
         self.bounded_row.extend(row);
-        self.bounded_row[Layout::TIME] = time;
-        for (k, bound) in unknowns {
-            self.bounded_row[self.row.numbers.y_at(k)] = bound;
+        self.bounded_row[Layout::TIME] = Dual::variable(time, 0);
+        for (k, [re, rate]) in unknowns {
+            self.bounded_row[self.row.numbers.y_at(k)] = Dual { re, eps: [rate] };
         }
+    }
+
+    /// Bounds all switching functions and their rates, over what bounds were taken last
+    /// (n_switches)
+    pub(super) fn bound(&mut self, bounds: &mut [Dual<1, Interval>]) {
         if let Some(Switching { switches, .. }) = &self.switching {
             switches.eval(&self.bounded_row, &mut self.bound_work, bounds);
         }
+    }
+
+    /// Bounds one switching function and its rate as [`bound`](Self::bound) does.
+    pub(super) fn bound_one(&mut self, k: usize, bounds: &mut Dual<1, Interval>) {
+        let Some(Switching { switches, .. }) = &self.switching else {
+            return;
+        };
+        let one = self.single.entry(k).or_insert_with(|| {
+            let mut builder = Builder::new(Folding::Finite);
+            let value = switches.record(&mut builder)[k];
+            let program = builder.finish_with_inputs(&[value], switches.inputs());
+            (program, Work::default())
+        });
+        let out = std::slice::from_mut(bounds);
+        one.0.eval(&self.bounded_row, &mut one.1, out);
     }
 
     /// Returns whether the numbers say the same branches as are held.

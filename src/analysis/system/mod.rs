@@ -48,7 +48,7 @@ use crate::analysis::look;
 use crate::diagnostic::{Diagnostic, Error};
 use crate::expr::program::Program;
 use crate::numeric::Ode;
-use crate::scalar::Interval;
+use crate::scalar::{Dual, Interval};
 use crate::scene::Scene;
 use crate::scene::broken::{Broken, broken};
 use crate::scene::configuration::{Configuration, Configured, Elimination};
@@ -287,22 +287,31 @@ impl System {
         self.recorded.branches.values(&self.numbers, values);
     }
 
-    /// Returns which switching functions read the time and are bounded by
-    /// [`bound_switches`](Self::bound_switches), and the unknowns that these read.
-    pub(super) fn timed_switches(&self) -> (Vec<usize>, Vec<usize>) {
-        self.recorded.branches.timed()
+    /// Returns which switching functions are bounded by [`bound_switches`](Self::bound_switches),
+    /// and the unknowns that these read.
+    pub(super) fn bounded_switches(&self) -> (Vec<usize>, Vec<usize>) {
+        self.recorded.branches.bounded()
     }
 
-    /// Bounds the switching functions, with branches held as they are, while the unknowns that
-    /// these read move between some bounds.   (n_switches)
-    pub(super) fn bound_switches(
+    /// Takes bounds of the time and of the unknowns that switching functions read, with their
+    /// rates; branches are held as they are.
+    pub(super) fn take_bounds(
         &mut self,
         time: Interval,
-        unknowns: impl Iterator<Item = (usize, Interval)>,
-        bounds: &mut [Interval],
+        unknowns: impl Iterator<Item = (usize, [Interval; 2])>,
     ) {
-        let numbers = &self.numbers;
-        (self.recorded.branches).bound(numbers, time, unknowns, bounds);
+        (self.recorded.branches).take_bounds(&self.numbers, time, unknowns);
+    }
+
+    /// Bounds the switching functions and their rates, over what bounds were taken last
+    /// (n_switches)
+    pub(super) fn bound_switches(&mut self, bounds: &mut [Dual<1, Interval>]) {
+        self.recorded.branches.bound(bounds);
+    }
+
+    /// Bounds one of them.
+    pub(super) fn bound_switch(&mut self, k: usize, bounds: &mut Dual<1, Interval>) {
+        self.recorded.branches.bound_one(k, bounds);
     }
 
     /// Returns whether the motion would stay where switch `k` changes, while those slide that do.

@@ -14,6 +14,7 @@
 //! output       output times
 //! ```
 
+mod bounded_switches;
 mod chatter;
 pub mod continuation;
 pub(super) mod counting;
@@ -32,5 +33,4 @@ pub mod output;
 pub mod ranks;
 pub mod states;
 pub mod switches;
-mod timed_switches;
 pub(super) mod valueless;

@@ -31,8 +31,8 @@
 //! [`never_end`], and where one chatters (`chatter.rs`).
 
 use crate::analysis::system::System;
+use crate::analysis::time::bounded_switches::{Asked, BoundedSwitches, Seen};
 use crate::analysis::time::chatter::Chatter;
-use crate::analysis::time::timed_switches::{Seen, TimedSwitches};
 use crate::numeric::event::{Locator, sign};
 use crate::numeric::{Failure, Method, Step};
 use crate::scalar::Scalar;
@@ -147,8 +147,10 @@ pub struct Switches {
     worst: usize,
     rest: usize,
     chatter: Chatter,
-    /// those that read the time
-    timed: TimedSwitches,
+    /// those that can be bounded
+    bounded: BoundedSwitches,
+    /// which of them bounds have shown to stay on their sides in the step under way   (n)
+    shown: Vec<bool>,
     duration: f64,
 }
 
@@ -178,7 +180,8 @@ impl Switches {
             worst: 0,
             rest: 0,
             chatter: Chatter::default(),
-            timed: TimedSwitches::new(system, n),
+            bounded: BoundedSwitches::new(system, n),
+            shown: vec![false; n],
             duration,
         }
     }
@@ -326,7 +329,7 @@ impl Switches {
             return false;
         }
         let delta = 1e-9 * self.duration;
-        self.timed.begin(y, ydot);
+        self.bounded.begin(y, ydot);
         self.slopes(system, t, y, ydot, delta);
         self.slope0.copy_from_slice(&self.slope1);
         system.switches(t, y, &mut self.g0);
@@ -381,8 +384,8 @@ impl Switches {
         let (y, ydot) = (method.y(), method.ydot());
         self.slopes(system, step.t1, y, ydot, 1e-4 * step.h);
         let landed = landed && self.has_landed(step);
-        let named = match self.look_at_timed(system, method, step, landed) {
-            Seen::Nothing => None,
+        let named = match self.look_at_bounded(system, method, step, landed) {
+            Seen::Nothing | Seen::Unknown => None,
             Seen::Look(named) => Some(named),
             Seen::Short(to) => {
                 self.next.fill(0);
@@ -423,24 +426,35 @@ impl Switches {
         self.judge_crossing(at, step, landed)
     }
 
-    /// Looks at the switches that read the time, but for those at which the step `landed`.
-    fn look_at_timed(
+    /// Looks at the switches that can be bounded, but for those at which the step `landed`.
+    fn look_at_bounded(
         &mut self,
         system: &mut System,
         method: &mut dyn Method<System>,
         step: &Step,
         landed: bool,
     ) -> Seen {
-        let slides = self.slide();
-        if !self.timed.are_asked_for(system, step, slides) {
-            return Seen::Nothing;
+        self.shown.fill(false);
+        if self.slide() {
+            return self.bounded.look_at_clocks(system, step);
         }
         let all = self.sides.iter().zip(&self.next);
         let asked = |(&side, &next)| if landed && next != 0 { 0 } else { side };
         let sides: Vec<i8> = all.map(asked).collect();
+        let asked = Asked {
+            step,
+            sides: &sides,
+            values: [&self.g0, &self.g1],
+        };
+        let seen = self.bounded.look(system, method, asked);
         // where the interpolant has no value, the scan says so, too
-        let seen = self.timed.look(system, method, step, &sides, slides);
-        seen.unwrap_or(Seen::Look(Vec::new()))
+        let seen = seen.unwrap_or(Seen::Look(Vec::new()));
+        if seen == Seen::Nothing {
+            for (k, shown) in self.shown.iter_mut().enumerate() {
+                *shown = sides[k] != 0 && self.bounded.has(k);
+            }
+        }
+        seen
     }
 
     /// Counts a step during which branches are let go; after the last one they are found anew.
@@ -462,7 +476,7 @@ impl Switches {
 
     /// Returns whether a switch cannot have come to zero within a step, or has where it `landed`.
     fn is_far(&self, k: usize, h: f64, landed: bool) -> bool {
-        if landed && self.next[k] != 0 {
+        if self.shown[k] || landed && self.next[k] != 0 {
             return true;
         }
         let steepest = self.steepest(k);
@@ -570,7 +584,7 @@ impl Switches {
 
     /// Makes the end of a step the beginning of the next.
     fn keep(&mut self, method: &dyn Method<System>) {
-        self.timed.begin(method.y(), method.ydot());
+        self.bounded.begin(method.y(), method.ydot());
         self.redone = 0;
         self.next.fill(0);
         self.locator.skip(&self.g1);
