@@ -7,9 +7,13 @@
 //! the time, of the states and of their rates instead ([`Dual`] of [`Interval`]):
 //!
 //! ```text
-//! 1  the whole step    control points of the cubic through both ends, twice as far apart: no proof,
-//!                      but what the error of the step lets expect
-//! 2  stretches         bounds of the interpolant itself ([`Courses`]), divided ([`subdivision`])
+//! 1  a room            in which the states are expected for some steps: its bounds are kept as long as
+//!                      steps stay in it
+//! 2  the middle        where the rate has no larger bounds than slopes at the ends of a step let
+//!                      expect, the cubic through the ends stands for the switch (`switches.rs`)
+//! 3  the whole step    control points of the cubics of the states, twice as far apart: no proof, but
+//!                      what the error of the step lets expect
+//! 4  stretches         bounds of the interpolant itself ([`Courses`]), divided ([`subdivision`])
 //!                      until each is shown to be free, or is the first that is not
 //! ```
 //!
@@ -40,8 +44,15 @@ const SHORTEST: f64 = 1e-9;
 /// Part of the step below which a stretch at whose end a switch has changed its side is divided no
 /// further where its rate has no bound: the first crossing within it is found from samples.
 const SEEN: f64 = 0.02;
+/// Room kept on both sides of what states do in a step, in as many of its lengths.
+const ROOM: f64 = 2.0;
+/// Bound of a rate over the larger of the slopes at both ends up to which these tell those between.
+const RESOLVED: f64 = 4.0;
 /// Part of a step that must have been shown for it to end there.
 const WORTH_ENDING: f64 = 0.01;
+
+/// The time of a room in which no step lies.
+const NO_TIME: Interval = Interval { lo: 0.0, hi: -1.0 };
 
 /// The course of the bounded switches within a step.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,6 +65,17 @@ pub(super) enum Seen {
     Short(f64),
     /// they were not looked at
     Unknown,
+}
+
+/// What the bounds of a room say of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Afar {
+    /// none comes to zero
+    Free,
+    /// some may, and rates at the ends of the step tell those between
+    Resolved,
+    /// some may
+    Open,
 }
 
 /// The switches of a system that can be bounded.
@@ -73,8 +95,13 @@ pub(super) struct BoundedSwitches {
     /// the stretch that was looked at last, and the values of all switches at its ends   (n each)
     stretch: [f64; 2],
     ends: [Vec<f64>; 2],
-    /// those that the whole step has not shown to be free
+    /// those that have not been shown to be free in the step under way
     open: Vec<usize>,
+    /// the room: bounds of the time, and of the unknowns and their rates   (u); bounds of all
+    /// switches in it   (n)
+    time: Interval,
+    room: Vec<[Interval; 2]>,
+    in_room: Vec<Dual<1, Interval>>,
     state: Vec<f64>,
     /// steps that go by before one is looked at, and as many after the last that stretches did not
     /// decide
@@ -106,6 +133,9 @@ impl BoundedSwitches {
             stretch: [f64::NAN; 2],
             ends: [vec![0.0; n], vec![0.0; n]],
             open: Vec::new(),
+            time: NO_TIME,
+            room: vec![[Interval::ANY; 2]; u],
+            in_room: vec![Dual::constant(0.0); n],
             state: Vec::new(),
             waits: 0,
             undecided: 0,
@@ -117,6 +147,11 @@ impl BoundedSwitches {
         for (begin, &k) in self.begin.iter_mut().zip(&self.unknowns) {
             *begin = [y[k], ydot[k]];
         }
+    }
+
+    /// Forgets the room: other branches are held from now on.
+    pub fn forget(&mut self) {
+        self.time = NO_TIME;
     }
 
     /// Returns whether a switch is one of these.
@@ -138,6 +173,64 @@ impl BoundedSwitches {
         }
     }
 
+    /// Returns those that have not been shown to be free in the step under way.
+    pub fn open(&self) -> &[usize] {
+        &self.open
+    }
+
+    /// Looks at a step by the bounds of the room in which it stays: returns whether all are free,
+    /// or, if not, whether `slopes` at both ends tell those between of all that are not.
+    pub fn look_from_afar(
+        &mut self,
+        system: &mut System,
+        method: &dyn Method<System>,
+        asked: Asked<'_>,
+        slopes: [&[f64]; 2],
+    ) -> Afar {
+        self.stay_in_room(system, method, asked.step);
+        self.open.clear();
+        let mut afar = Afar::Free;
+        for &k in self.which.iter().filter(|&&k| asked.sides[k] != 0) {
+            let bounds = self.in_room[k];
+            if self.of_one(k, bounds, asked, asked.values, asked.step.h, true) == Shown::Free {
+                continue;
+            }
+            self.open.push(k);
+            let steepest = slopes.map(|slope| slope[k].abs());
+            let most = RESOLVED * steepest[0].max(steepest[1]);
+            let rate = bounds.eps[0];
+            if !(rate.lo >= -most && rate.hi <= most) {
+                afar = Afar::Open;
+            } else if afar == Afar::Free {
+                afar = Afar::Resolved;
+            }
+        }
+        afar
+    }
+
+    /// Bounds the switches in another room where a step leads out of the last one.
+    fn stay_in_room(&mut self, system: &mut System, method: &dyn Method<System>, step: &Step) {
+        let (y, ydot) = (method.y(), method.ydot());
+        let inside = |x: &Interval, room: &Interval| room.lo <= x.lo && x.hi <= room.hi;
+        let all = self.unknowns.iter().zip(&self.begin).zip(&self.room);
+        let stays = all.map(|((&k, &begin), room)| {
+            let [value, rate] = hulls(begin, [y[k], ydot[k]], step.h);
+            inside(&value, &room[0]) && inside(&rate, &room[1])
+        });
+        let time = Interval::between(step.t0, step.t1);
+        if inside(&time, &self.time) && stays.fold(true, |all, stays| all && stays) {
+            return;
+        }
+        self.time = Interval::between(step.t0, step.t1 + ROOM * step.h);
+        let all = self.unknowns.iter().zip(&self.begin).zip(&mut self.room);
+        for ((&k, &begin), room) in all {
+            *room = hulls(begin, [y[k], ydot[k]], step.h).map(|x| widened(x, ROOM));
+        }
+        let unknowns = self.unknowns.iter().copied().zip(self.room.iter().copied());
+        system.take_bounds(self.time, unknowns);
+        system.bound_switches(&mut self.in_room);
+    }
+
     /// Looks at a step.
     ///
     /// # Errors
@@ -148,8 +241,8 @@ impl BoundedSwitches {
         method: &mut dyn Method<System>,
         asked: Asked<'_>,
     ) -> Result<Seen, Failure> {
-        if self.waits > 0 || self.which.iter().all(|&k| asked.sides[k] == 0) {
-            self.waits = self.waits.saturating_sub(1);
+        if self.waits > 0 {
+            self.waits -= 1;
             return Ok(Seen::Unknown);
         }
         let Step { t0, t1, .. } = *asked.step;
@@ -198,38 +291,35 @@ impl BoundedSwitches {
         Ok(seen)
     }
 
-    /// Returns what the whole step shows.
+    /// Returns what the whole step shows of those that are open.
     fn of_whole(
         &mut self,
         system: &mut System,
         method: &dyn Method<System>,
         asked: Asked<'_>,
     ) -> Shown {
-        let h = asked.step.h;
-        let (y, ydot, third) = (method.y(), method.ydot(), h / 3.0);
+        let Step { t0, t1, h, .. } = *asked.step;
+        let (y, ydot) = (method.y(), method.ydot());
         let ends = self.unknowns.iter().zip(&self.begin);
-        let unknowns = ends.map(|(&k, &[y0, rate])| {
-            let [a, b] = [y0 + third * rate, y[k] - third * ydot[k]];
-            let value = widened(hull(&[y0, a, b, y[k]]));
-            (k, [value, widened(hull(&[rate, (b - a) / third, ydot[k]]))])
+        let unknowns = ends.map(|(&k, &begin)| {
+            let of_step = hulls(begin, [y[k], ydot[k]], h);
+            (k, of_step.map(|x| widened(x, 0.5)))
         });
-        let time = Interval::between(asked.step.t0, asked.step.t1);
-        system.take_bounds(time, unknowns);
-        system.bound_switches(&mut self.bounds);
-        self.open.clear();
-        let mut shown = Shown::Free;
-        for &k in self.which.iter().filter(|&&k| asked.sides[k] != 0) {
-            let of_one = self.of_one(k, asked, asked.values, h, true);
-            if of_one != Shown::Free {
-                self.open.push(k);
-            }
-            shown = match (shown, of_one) {
-                (_, Shown::Free) => shown,
+        system.take_bounds(Interval::between(t0, t1), unknowns);
+        let mut all = Shown::Free;
+        let mut open = std::mem::take(&mut self.open);
+        open.retain(|&k| {
+            system.bound_switch(k, &mut self.bounds[k]);
+            let shown = self.of_one(k, self.bounds[k], asked, asked.values, h, true);
+            all = match (all, shown) {
+                (_, Shown::Free) => all,
                 (Shown::Nothing, _) | (_, Shown::Nothing) => Shown::Nothing,
                 _ => Shown::Event,
             };
-        }
-        shown
+            shown != Shown::Free
+        });
+        self.open = open;
+        all
     }
 
     /// Takes the interpolant of a step.
@@ -287,7 +377,8 @@ impl BoundedSwitches {
         let mut shown = Shown::Free;
         for &k in &self.open {
             system.bound_switch(k, &mut self.bounds[k]);
-            match self.of_one(k, asked, [at_from, at_to], to - from, begins) {
+            let bounds = self.bounds[k];
+            match self.of_one(k, bounds, asked, [at_from, at_to], to - from, begins) {
                 Shown::Free => {}
                 Shown::Event => shown = Shown::Event,
                 Shown::Nothing => return Shown::Nothing,
@@ -301,6 +392,7 @@ impl BoundedSwitches {
     fn of_one(
         &self,
         k: usize,
+        Dual { re, eps }: Dual<1, Interval>,
         asked: Asked<'_>,
         values: [&[f64]; 2],
         h: f64,
@@ -311,7 +403,6 @@ impl BoundedSwitches {
         if begins {
             a = a.max(0.0);
         }
-        let Dual { re, eps } = self.bounds[k];
         match course(ordered(re, side).0, ordered(eps[0], side), [a, b], h) {
             // that there is one is seen, and few others fit in
             Shown::Nothing if b < 0.0 && h < SEEN * asked.step.h => Shown::Event,
@@ -328,9 +419,20 @@ fn ordered(bounds: Interval, side: f64) -> (f64, f64) {
     }
 }
 
-/// Returns bounds of which both are further away by half of what lies between them.
-fn widened(bounds: Interval) -> Interval {
-    let room = 0.5 * (bounds.hi - bounds.lo);
+/// Returns bounds of the cubic through both ends of a step of length `h`, and of its rate, by
+/// value and rate at both.
+fn hulls([y0, rate0]: [f64; 2], [y1, rate1]: [f64; 2], h: f64) -> [Interval; 2] {
+    let third = h / 3.0;
+    let [a, b] = [y0 + third * rate0, y1 - third * rate1];
+    [
+        hull(&[y0, a, b, y1]),
+        hull(&[rate0, (b - a) / third, rate1]),
+    ]
+}
+
+/// Returns bounds of which both are further away by a part of what lies between them.
+fn widened(bounds: Interval, part: f64) -> Interval {
+    let room = part * (bounds.hi - bounds.lo);
     Interval::between(bounds.lo - room, bounds.hi + room)
 }
 

@@ -31,9 +31,10 @@
 //! [`never_end`], and where one chatters (`chatter.rs`).
 
 use crate::analysis::system::System;
-use crate::analysis::time::bounded_switches::{Asked, BoundedSwitches, Seen};
+use crate::analysis::time::bounded_switches::{Afar, Asked, BoundedSwitches, Seen};
 use crate::analysis::time::chatter::Chatter;
 use crate::numeric::event::{Locator, sign};
+use crate::numeric::subdivision::Shown;
 use crate::numeric::{Failure, Method, Step};
 use crate::scalar::Scalar;
 
@@ -149,6 +150,8 @@ pub struct Switches {
     chatter: Chatter,
     /// those that can be bounded
     bounded: BoundedSwitches,
+    /// the side of each that is asked for in the step under way, else 0   (n)
+    asked: Vec<i8>,
     /// which of them bounds have shown to stay on their sides in the step under way   (n)
     shown: Vec<bool>,
     duration: f64,
@@ -181,6 +184,7 @@ impl Switches {
             rest: 0,
             chatter: Chatter::default(),
             bounded: BoundedSwitches::new(system, n),
+            asked: Vec::with_capacity(n),
             shown: vec![false; n],
             duration,
         }
@@ -275,7 +279,8 @@ impl Switches {
     }
 
     /// Holds the branches on their sides, except where they slide.
-    fn hold(&self, system: &mut System) {
+    fn hold(&mut self, system: &mut System) {
+        self.bounded.forget();
         system.branches_mut().hold(&self.sides);
         system
             .branches_mut()
@@ -440,21 +445,78 @@ impl Switches {
         }
         let all = self.sides.iter().zip(&self.next);
         let asked = |(&side, &next)| if landed && next != 0 { 0 } else { side };
-        let sides: Vec<i8> = all.map(asked).collect();
+        self.asked.clear();
+        self.asked.extend(all.map(asked));
         let asked = Asked {
             step,
-            sides: &sides,
+            sides: &self.asked,
+            values: [&self.g0, &self.g1],
+        };
+        let slopes = [&self.slope0[..], &self.slope1];
+        let seen = match self.bounded.look_from_afar(system, method, asked, slopes) {
+            Afar::Free => Seen::Nothing,
+            Afar::Resolved => match self.middle_tells(system, method, step) {
+                Shown::Free => Seen::Nothing,
+                Shown::Event => Seen::Look(Vec::new()),
+                Shown::Nothing => self.look_closely(system, method, step),
+            },
+            Afar::Open => self.look_closely(system, method, step),
+        };
+        if seen == Seen::Nothing {
+            for (k, shown) in self.shown.iter_mut().enumerate() {
+                *shown = self.asked[k] != 0 && self.bounded.has(k);
+            }
+        }
+        seen
+    }
+
+    /// Looks at the switches that are open by bounds of the step itself.
+    fn look_closely(
+        &mut self,
+        system: &mut System,
+        method: &mut dyn Method<System>,
+        step: &Step,
+    ) -> Seen {
+        let asked = Asked {
+            step,
+            sides: &self.asked,
             values: [&self.g0, &self.g1],
         };
         let seen = self.bounded.look(system, method, asked);
         // where the interpolant has no value, the scan says so, too
-        let seen = seen.unwrap_or(Seen::Look(Vec::new()));
-        if seen == Seen::Nothing {
-            for (k, shown) in self.shown.iter_mut().enumerate() {
-                *shown = sides[k] != 0 && self.bounded.has(k);
+        seen.unwrap_or(Seen::Look(Vec::new()))
+    }
+
+    /// Returns what the middle of a step tells of the switches that are open.
+    fn middle_tells(
+        &mut self,
+        system: &mut System,
+        method: &dyn Method<System>,
+        step: &Step,
+    ) -> Shown {
+        if !method.middle(&mut self.probe) {
+            return Shown::Nothing;
+        }
+        let middle = 0.5 * (step.t0 + step.t1);
+        system.switches(middle, &self.probe, &mut self.middle);
+        let mut all = Shown::Free;
+        for &k in self.bounded.open() {
+            match self.cubic_tells(k, step.h) {
+                Shown::Free => {}
+                Shown::Event => all = Shown::Event,
+                Shown::Nothing => return Shown::Nothing,
             }
         }
-        seen
+        all
+    }
+
+    /// Returns what the cubic of a switch tells, by its values at the ends of a step and in its
+    /// middle.
+    fn cubic_tells(&self, k: usize, h: f64) -> Shown {
+        let side = f64::from(self.sides[k]);
+        let values = [&self.g0, &self.middle, &self.g1].map(|g| side * g[k]);
+        let slopes = [&self.slope0, &self.slope1].map(|slope| side * slope[k]);
+        course(values, slopes.map(|slope| h * slope))
     }
 
     /// Counts a step during which branches are let go; after the last one they are found anew.
@@ -510,12 +572,7 @@ impl Switches {
         }
         let middle = 0.5 * (step.t0 + step.t1);
         system.switches(middle, &self.probe, &mut self.middle);
-        let stays = |k: usize| {
-            let side = f64::from(self.sides[k]);
-            let values = [&self.g0, &self.middle, &self.g1].map(|g| side * g[k]);
-            let slopes = [&self.slope0, &self.slope1].map(|slope| side * slope[k]);
-            stays_positive(values, slopes.map(|slope| step.h * slope))
-        };
+        let stays = |k: usize| self.cubic_tells(k, step.h) == Shown::Free;
         (0..self.sides.len()).all(|k| self.is_far(k, step.h, landed) || stays(k))
     }
 
@@ -593,22 +650,33 @@ impl Switches {
     }
 }
 
-/// Returns whether a function stays positive within a step, by its values where that begins, in
-/// its middle and where it ends, and its slopes, per step, at both ends: the cubic through these
-/// leads through the middle, and is clear of zero.
+/// Returns what is shown of a function that is to stay positive within a step, by its values where
+/// that begins, in its middle and where it ends, and its slopes, per step, at both ends, if the
+/// cubic through these leads through the middle.
 ///
 /// ```text
 /// g = Σ (3 over i) bᵢ xⁱ (1 − x)³⁻ⁱ + 16 d x² (1 − x)²        d: the distance in the middle
 /// ```
-fn stays_positive([b0, middle, b3]: [f64; 3], slopes: [f64; 2]) -> bool {
+///
+/// Clear of zero, control points are on the side of the function; where they change their sign
+/// once, so does it.
+fn course([b0, middle, b3]: [f64; 3], slopes: [f64; 2]) -> Shown {
     let (b1, b2) = (b0 + slopes[0] / 3.0, b3 - slopes[1] / 3.0);
     let all = [b0, b1, b2, b3];
     let least = all.into_iter().fold(f64::INFINITY, f64::min);
     let largest = all.into_iter().fold(f64::NEG_INFINITY, f64::max);
     let off = (middle - 0.125 * (b0 + 3.0 * (b1 + b2) + b3)).abs();
-    off <= CUBIC_TOLERANCE * (largest - least)
-        && b1.min(b2).min(b3) > CLEAR_OF_ZERO * off
-        && b0 >= -BEGINS_AT_ZERO * largest
+    let follows = off <= CUBIC_TOLERANCE * (largest - least);
+    let room = CLEAR_OF_ZERO * off;
+    if !follows || b0 < -BEGINS_AT_ZERO * largest {
+        Shown::Nothing
+    } else if b1.min(b2).min(b3) > room {
+        Shown::Free
+    } else if b3 < -room && b0.max(b1) > room && (b1 >= 0.0 || b2 <= 0.0) {
+        Shown::Event
+    } else {
+        Shown::Nothing
+    }
 }
 
 #[cfg(test)]
@@ -616,10 +684,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_said_to_stay_positive_does() {
+    fn what_is_said_to_stay_positive_does_and_what_crosses_crosses_once() {
         // courses of a step: a line, bent, with up to a whole swing
         let spread = |k: i32, of: f64| (f64::from(k) * of.sqrt()).fract() * 2.0 - 1.0;
-        let mut stayed = 0;
+        let mut told = [0; 2];
         for k in 0..20_000 {
             let [a, b, c, d, w, phase] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0].map(|of| spread(k, of));
             let w = std::f64::consts::PI * (1.0 + w);
@@ -628,14 +696,19 @@ mod tests {
             let slope = |x: f64| b + 2.0 * c * x + d * w * (w * x + 4.0 * phase).cos();
             // every third begins at zero
             let g = |x: f64| begins + course(x) - course(0.0);
-            if !stays_positive([0.0, 0.5, 1.0].map(g), [0.0, 1.0].map(slope)) {
+            let shown = super::course([0.0, 0.5, 1.0].map(g), [0.0, 1.0].map(slope));
+            if shown == Shown::Nothing {
                 continue;
             }
-            stayed += 1;
-            let crosses = (1..1000).any(|i| g(f64::from(i) * 1e-3) <= 0.0);
-            assert!(!crosses, "{begins} {b} {c} {d} {w} {phase}");
+            told[usize::from(shown == Shown::Event)] += 1;
+            let sides = (1..=1000).map(|i| g(f64::from(i) * 1e-3) > 0.0);
+            let sides: Vec<bool> = sides.collect();
+            let changes = sides.windows(2).filter(|pair| pair[0] != pair[1]).count();
+            let expected = usize::from(shown == Shown::Event);
+            assert_eq!(changes, expected, "{begins} {b} {c} {d} {w} {phase}");
+            assert!(sides[0]);
         }
-        assert!(stayed > 4000, "{stayed}");
+        assert!(told.iter().all(|&n| n > 1000), "{told:?}");
     }
 
     /// Returns whether a run has no end in which event n is at `time(n)`.
