@@ -97,18 +97,10 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
 operators!([const N: usize, S: Scalar] Dual<N, S>);
 
 impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
-    const BOUNDS: bool = S::BOUNDS;
-
     value_part_comparisons!(S);
 
     #[inline(always)]
     fn select(mask: S::Mask, yes: Self, no: Self) -> Self {
-        yes.map2(no, S::select(mask, yes.re, no.re), |x, y| {
-            S::select_rate(mask, x, y)
-        })
-    }
-    #[inline(always)]
-    fn select_of_compared(mask: S::Mask, yes: Self, no: Self) -> Self {
         yes.map2(no, S::select(mask, yes.re, no.re), |x, y| {
             S::select(mask, x, y)
         })

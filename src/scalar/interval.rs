@@ -201,8 +201,6 @@ impl Interval {
 operators!([] Interval);
 
 impl Scalar for Interval {
-    const BOUNDS: bool = true;
-
     type Mask = Answer;
 
     fn constant(x: f64) -> Self {
@@ -241,13 +239,6 @@ impl Scalar for Interval {
         }
     }
 
-    fn select_rate(mask: Answer, yes: Self, no: Self) -> Self {
-        match mask {
-            Yes => yes,
-            No => no,
-            Perhaps => Self::ANY,
-        }
-    }
     fn rate_of_steps(self) -> Self {
         match self.known() {
             Some(_) => Self::zero(),

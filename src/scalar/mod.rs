@@ -114,9 +114,6 @@ pub trait Scalar:
     /// copy of it, and one over duals.
     const CALLS_FUNCTIONS: bool = false;
 
-    /// Tells whether the number bounds values: a selection between two numbers may be undecided.
-    const BOUNDS: bool = false;
-
     /// Creates a number that depends on nothing.
     fn constant(x: f64) -> Self;
     /// Returns zero.
@@ -158,18 +155,6 @@ pub trait Scalar:
         }
     }
 
-    /// Selects like [`Scalar::select`] between the two numbers that are compared: the result bends
-    /// where they are equal, and does not jump.
-    #[inline(always)]
-    fn select_of_compared(mask: Self::Mask, yes: Self, no: Self) -> Self {
-        Self::select(mask, yes, no)
-    }
-    /// Selects between the rates of two numbers; bounds have none where that is not decided, since
-    /// what is selected may jump.
-    #[inline(always)]
-    fn select_rate(mask: Self::Mask, yes: Self, no: Self) -> Self {
-        Self::select(mask, yes, no)
-    }
     /// Returns the rate of a value that is constant but for jumps: zero, or, of bounds that hold
     /// several such values, none.
     #[inline(always)]

@@ -6,7 +6,7 @@
 
 use super::algebraic_loops::AlgebraicLoops;
 use super::sliding::Slides;
-use crate::expr::program::{Builder, Folding, Program, Work};
+use crate::expr::program::{Program, Share, Work};
 use crate::model::Level;
 use crate::scalar::{Dual, Interval, Scalar};
 use crate::scene::equations::Unsupported;
@@ -54,8 +54,8 @@ pub struct Branches {
     /// the row, with bounds of what moves and of its rates
     bounded_row: Vec<Dual<1, Interval>>,
     bound_work: Work<Dual<1, Interval>>,
-    /// the programs of single switches that bounds of all have not decided
-    single: BTreeMap<usize, (Program, Work<Dual<1, Interval>>)>,
+    /// what single switches that bounds of all have not decided need of the program
+    shares: BTreeMap<usize, Share>,
 }
 
 impl Branches {
@@ -92,7 +92,7 @@ impl Branches {
             values_aside: vec![0.0; n],
             bounded_row: Vec::new(),
             bound_work: Work::default(),
-            single: BTreeMap::new(),
+            shares: BTreeMap::new(),
         })
     }
 
@@ -335,14 +335,9 @@ impl Branches {
         let Some(Switching { switches, .. }) = &self.switching else {
             return;
         };
-        let one = self.single.entry(k).or_insert_with(|| {
-            let mut builder = Builder::new(Folding::Finite);
-            let value = switches.record(&mut builder)[k];
-            let program = builder.finish_with_inputs(&[value], switches.inputs());
-            (program, Work::default())
-        });
-        let out = std::slice::from_mut(bounds);
-        one.0.eval(&self.bounded_row, &mut one.1, out);
+        let share = self.shares.entry(k);
+        let share = share.or_insert_with(|| switches.share::<Dual<1, Interval>>(k));
+        *bounds = switches.eval_share(share, &self.bounded_row, &mut self.bound_work);
     }
 
     /// Returns whether the numbers say the same branches as are held.

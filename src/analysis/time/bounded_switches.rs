@@ -7,12 +7,12 @@
 //! the time, of the states and of their rates instead ([`Dual`] of [`Interval`]):
 //!
 //! ```text
-//! 1  a room            in which the states are expected for some steps: its bounds are kept as long as
-//!                      steps stay in it
-//! 2  the middle        where the rate has no larger bounds than slopes at the ends of a step let
-//!                      expect, the cubic through the ends stands for the switch (`switches.rs`)
-//! 3  the whole step    control points of the cubics of the states, twice as far apart: no proof, but
+//! 1  a room            in which the states are expected for some steps: its bounds are kept as
+//!                      long as steps stay in it
+//! 2  the whole step    control points of the cubics of the states, twice as far apart: no proof, but
 //!                      what the error of the step lets expect
+//! 3  the middle        where a switch goes no further ways within the step than its ends say, the
+//!                      cubic through these and the middle (`switches.rs`)
 //! 4  stretches         bounds of the interpolant itself ([`Courses`]), divided ([`subdivision`])
 //!                      until each is shown to be free, or is the first that is not
 //! ```
@@ -24,8 +24,10 @@
 //! max(g(a) + ṙ τ, g(b) − Ṙ (b − a − τ)) > 0     for all τ: where both lines meet
 //! ```
 //!
-//! and has one crossing if ġ keeps its sign and g changes it. So what begins at zero and leaves it
-//! needs no short stretches, and the work grows with the logarithm of how near a touch is.
+//! and has one crossing if ġ keeps its sign and g changes it. (Branches are held: what is still
+//! selected within a program bends there, and does not jump, so that its rates are between both.)
+//! So what begins at zero and leaves it needs no short stretches, and the work grows with the
+//! logarithm of how near a touch is.
 //!
 //! A switch that divides by bounds which hold zero has none itself, however short the stretch: it
 //! is asked for no more. Where stretches did not decide, twice as many steps go by before the next
@@ -41,15 +43,15 @@ use crate::scalar::{Dual, Interval, Scalar};
 /// Shortest stretch that is bounded, as a part of the step: a touch that is shorter changes nothing
 /// that the step could tell.
 const SHORTEST: f64 = 1e-9;
-/// Part of the step below which a stretch at whose end a switch has changed its side is divided no
-/// further where its rate has no bound: the first crossing within it is found from samples.
-const SEEN: f64 = 0.02;
 /// Room kept on both sides of what states do in a step, in as many of its lengths.
 const ROOM: f64 = 2.0;
-/// Bound of a rate over the larger of the slopes at both ends up to which these tell those between.
-const RESOLVED: f64 = 4.0;
-/// Part of a step that must have been shown for it to end there.
-const WORTH_ENDING: f64 = 0.01;
+/// Bound of the way of a switch within a step, over what its values and slopes at the ends say that
+/// it passes, up to which these and the middle tell what it does: two and a half waves have as
+/// much.
+const RESOLVED: f64 = 8.0;
+/// Part of a step that is short: the step ends where so much of it has been shown, and a stretch at
+/// whose end a switch has changed its side is divided no further where its rate has no bound.
+const SHORT: f64 = 0.01;
 
 /// The time of a room in which no step lies.
 const NO_TIME: Interval = Interval { lo: 0.0, hi: -1.0 };
@@ -67,12 +69,14 @@ pub(super) enum Seen {
     Unknown,
 }
 
-/// What the bounds of a room say of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Afar {
+/// The knowledge of a step that its bounds give.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Whole {
     /// none comes to zero
     Free,
-    /// some may, and rates at the ends of the step tell those between
+    /// one does, once, and the others do not or do as well
+    Event,
+    /// some may, and go no further ways than the ends of the step say
     Resolved,
     /// some may
     Open,
@@ -110,12 +114,13 @@ pub(super) struct BoundedSwitches {
 }
 
 /// A step under way: its ends, and for all switches the side on which each is held, 0 where it is
-/// not asked for, and the values at both ends.
+/// not asked for, and the values and slopes at both ends.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Asked<'a> {
     pub step: &'a Step,
     pub sides: &'a [i8],
     pub values: [&'a [f64]; 2],
+    pub slopes: [&'a [f64]; 2],
 }
 
 impl BoundedSwitches {
@@ -178,34 +183,25 @@ impl BoundedSwitches {
         &self.open
     }
 
-    /// Looks at a step by the bounds of the room in which it stays: returns whether all are free,
-    /// or, if not, whether `slopes` at both ends tell those between of all that are not.
-    pub fn look_from_afar(
+    /// Looks at a step by the bounds of the room in which it stays: returns whether all are free.
+    pub fn are_far(
         &mut self,
         system: &mut System,
         method: &dyn Method<System>,
         asked: Asked<'_>,
-        slopes: [&[f64]; 2],
-    ) -> Afar {
+    ) -> bool {
         self.stay_in_room(system, method, asked.step);
-        self.open.clear();
-        let mut afar = Afar::Free;
-        for &k in self.which.iter().filter(|&&k| asked.sides[k] != 0) {
-            let bounds = self.in_room[k];
-            if self.of_one(k, bounds, asked, asked.values, asked.step.h, true) == Shown::Free {
-                continue;
-            }
-            self.open.push(k);
-            let steepest = slopes.map(|slope| slope[k].abs());
-            let most = RESOLVED * steepest[0].max(steepest[1]);
-            let rate = bounds.eps[0];
-            if !(rate.lo >= -most && rate.hi <= most) {
-                afar = Afar::Open;
-            } else if afar == Afar::Free {
-                afar = Afar::Resolved;
-            }
-        }
-        afar
+        let mut open = std::mem::take(&mut self.open);
+        open.clear();
+        open.extend(self.which.iter().filter(|&&k| {
+            let free = |k: usize| {
+                let bounds = self.in_room[k];
+                self.of_one(k, bounds, asked, asked.values, asked.step.h, true) == Shown::Free
+            };
+            asked.sides[k] != 0 && !free(k)
+        }));
+        self.open = open;
+        self.open.is_empty()
     }
 
     /// Bounds the switches in another room where a step leads out of the last one.
@@ -231,11 +227,11 @@ impl BoundedSwitches {
         system.bound_switches(&mut self.in_room);
     }
 
-    /// Looks at a step.
+    /// Looks at a step by bounds of the interpolant over stretches of it, at those that are open.
     ///
     /// # Errors
     /// The interpolant has no value within the step.
-    pub fn look(
+    pub fn look_at_stretches(
         &mut self,
         system: &mut System,
         method: &mut dyn Method<System>,
@@ -246,12 +242,6 @@ impl BoundedSwitches {
             return Ok(Seen::Unknown);
         }
         let Step { t0, t1, .. } = *asked.step;
-        system.set(t1, method.y());
-        match self.of_whole(system, method, asked) {
-            Shown::Free => return Ok(Seen::Nothing),
-            Shown::Event => return Ok(Seen::Look(Vec::new())),
-            Shown::Nothing => {}
-        }
         self.follow(system, method, asked.step)?;
         let search = Search {
             first: 0.5 * (t1 - t0),
@@ -275,7 +265,7 @@ impl BoundedSwitches {
         let seen = match found.event {
             Some([a, b]) => Seen::Look(vec![a, b]),
             None if found.free_to >= t1 => Seen::Nothing,
-            None if found.free_to > t0 + WORTH_ENDING * (t1 - t0) => Seen::Short(found.free_to),
+            None if found.free_to > t0 + SHORT * (t1 - t0) => Seen::Short(found.free_to),
             None => Seen::Unknown,
         };
         let is_decided = seen != Seen::Unknown;
@@ -291,13 +281,13 @@ impl BoundedSwitches {
         Ok(seen)
     }
 
-    /// Returns what the whole step shows of those that are open.
-    fn of_whole(
+    /// Looks at a step by bounds of the whole of it, at those that are open.
+    pub fn look_at_whole(
         &mut self,
         system: &mut System,
         method: &dyn Method<System>,
         asked: Asked<'_>,
-    ) -> Shown {
+    ) -> Whole {
         let Step { t0, t1, h, .. } = *asked.step;
         let (y, ydot) = (method.y(), method.ydot());
         let ends = self.unknowns.iter().zip(&self.begin);
@@ -306,20 +296,31 @@ impl BoundedSwitches {
             (k, of_step.map(|x| widened(x, 0.5)))
         });
         system.take_bounds(Interval::between(t0, t1), unknowns);
-        let mut all = Shown::Free;
+        let mut whole = Whole::Free;
         let mut open = std::mem::take(&mut self.open);
         open.retain(|&k| {
             system.bound_switch(k, &mut self.bounds[k]);
-            let shown = self.of_one(k, self.bounds[k], asked, asked.values, h, true);
-            all = match (all, shown) {
-                (_, Shown::Free) => all,
-                (Shown::Nothing, _) | (_, Shown::Nothing) => Shown::Nothing,
-                _ => Shown::Event,
+            let bounds = self.bounds[k];
+            let of_one = match self.of_one(k, bounds, asked, asked.values, h, true) {
+                Shown::Free => return false,
+                Shown::Event => Whole::Event,
+                Shown::Nothing => {
+                    let [g0, g1] = asked.values.map(|g| g[k]);
+                    let [slope0, slope1] = asked.slopes.map(|slope| slope[k]);
+                    let span = hulls([g0, slope0], [g1, slope1], h)[0];
+                    let most = RESOLVED * (span.hi - span.lo) / h;
+                    let rate = bounds.eps[0];
+                    match rate.lo >= -most && rate.hi <= most {
+                        true => Whole::Resolved,
+                        false => Whole::Open,
+                    }
+                }
             };
-            shown != Shown::Free
+            whole = whole.max(of_one);
+            true
         });
         self.open = open;
-        all
+        whole
     }
 
     /// Takes the interpolant of a step.
@@ -405,7 +406,7 @@ impl BoundedSwitches {
         }
         match course(ordered(re, side).0, ordered(eps[0], side), [a, b], h) {
             // that there is one is seen, and few others fit in
-            Shown::Nothing if b < 0.0 && h < SEEN * asked.step.h => Shown::Event,
+            Shown::Nothing if b < 0.0 && h < SHORT * asked.step.h => Shown::Event,
             shown => shown,
         }
     }

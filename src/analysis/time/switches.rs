@@ -31,7 +31,7 @@
 //! [`never_end`], and where one chatters (`chatter.rs`).
 
 use crate::analysis::system::System;
-use crate::analysis::time::bounded_switches::{Afar, Asked, BoundedSwitches, Seen};
+use crate::analysis::time::bounded_switches::{Asked, BoundedSwitches, Seen, Whole};
 use crate::analysis::time::chatter::Chatter;
 use crate::numeric::event::{Locator, sign};
 use crate::numeric::subdivision::Shown;
@@ -66,12 +66,9 @@ const CUBIC_TOLERANCE: f64 = 0.05;
 /// Distance from zero of the control points behind the beginning, over the same distance: three
 /// times what a course of order four could need.
 const CLEAR_OF_ZERO: f64 = 4.0;
-/// Value on the other side at the beginning of a step, as a part of the largest control point, that
-/// is rounding of the switch there.
-const BEGINS_AT_ZERO: f64 = 1e-9;
-/// Distance from zero where a switch was to be, as a part of the way within the step, up to which
-/// it is not looked for once more.
-const EXACT_LANDING: f64 = 1e-9;
+/// Distance from zero at the beginning of a step, as a part of the largest control point, or where
+/// a switch was to be, as a part of the way within the step, that is rounding.
+const AT_ZERO: f64 = 1e-9;
 /// Steps that are repeated because of one switch, at most.
 const MAX_REDONE: usize = 30;
 /// Halvings of one step because its interpolant has no value, at most.
@@ -447,21 +444,7 @@ impl Switches {
         let asked = |(&side, &next)| if landed && next != 0 { 0 } else { side };
         self.asked.clear();
         self.asked.extend(all.map(asked));
-        let asked = Asked {
-            step,
-            sides: &self.asked,
-            values: [&self.g0, &self.g1],
-        };
-        let slopes = [&self.slope0[..], &self.slope1];
-        let seen = match self.bounded.look_from_afar(system, method, asked, slopes) {
-            Afar::Free => Seen::Nothing,
-            Afar::Resolved => match self.middle_tells(system, method, step) {
-                Shown::Free => Seen::Nothing,
-                Shown::Event => Seen::Look(Vec::new()),
-                Shown::Nothing => self.look_closely(system, method, step),
-            },
-            Afar::Open => self.look_closely(system, method, step),
-        };
+        let seen = self.look_at_asked(system, method, step);
         if seen == Seen::Nothing {
             for (k, shown) in self.shown.iter_mut().enumerate() {
                 *shown = self.asked[k] != 0 && self.bounded.has(k);
@@ -470,8 +453,8 @@ impl Switches {
         seen
     }
 
-    /// Looks at the switches that are open by bounds of the step itself.
-    fn look_closely(
+    /// Looks at the switches that are asked for by bounds, from afar and more closely.
+    fn look_at_asked(
         &mut self,
         system: &mut System,
         method: &mut dyn Method<System>,
@@ -481,10 +464,32 @@ impl Switches {
             step,
             sides: &self.asked,
             values: [&self.g0, &self.g1],
+            slopes: [&self.slope0, &self.slope1],
         };
-        let seen = self.bounded.look(system, method, asked);
-        // where the interpolant has no value, the scan says so, too
-        seen.unwrap_or(Seen::Look(Vec::new()))
+        if self.bounded.are_far(system, method, asked) {
+            return Seen::Nothing;
+        }
+        let shown = match self.bounded.look_at_whole(system, method, asked) {
+            Whole::Free => Shown::Free,
+            Whole::Event => Shown::Event,
+            Whole::Resolved => self.middle_tells(system, method, step),
+            Whole::Open => Shown::Nothing,
+        };
+        match shown {
+            Shown::Free => Seen::Nothing,
+            Shown::Event => Seen::Look(Vec::new()),
+            Shown::Nothing => {
+                let asked = Asked {
+                    step,
+                    sides: &self.asked,
+                    values: [&self.g0, &self.g1],
+                    slopes: [&self.slope0, &self.slope1],
+                };
+                let seen = self.bounded.look_at_stretches(system, method, asked);
+                // where the interpolant has no value, the scan says so, too
+                seen.unwrap_or(Seen::Look(Vec::new()))
+            }
+        }
     }
 
     /// Returns what the middle of a step tells of the switches that are open.
@@ -564,7 +569,7 @@ impl Switches {
     ) -> bool {
         // where one has changed its side, or came to zero elsewhere, there is no need to ask
         let crossed = |k: usize| match landed && self.next[k] != 0 {
-            true => self.g1[k].abs() > EXACT_LANDING * step.h * self.steepest(k),
+            true => self.g1[k].abs() > AT_ZERO * step.h * self.steepest(k),
             false => sign(self.g1[k]) != self.sides[k] && !self.is_far(k, step.h, landed),
         };
         if self.slide() || (0..self.sides.len()).any(crossed) || !method.middle(&mut self.probe) {
@@ -668,7 +673,7 @@ fn course([b0, middle, b3]: [f64; 3], slopes: [f64; 2]) -> Shown {
     let off = (middle - 0.125 * (b0 + 3.0 * (b1 + b2) + b3)).abs();
     let follows = off <= CUBIC_TOLERANCE * (largest - least);
     let room = CLEAR_OF_ZERO * off;
-    if !follows || b0 < -BEGINS_AT_ZERO * largest {
+    if !follows || b0 < -AT_ZERO * largest {
         Shown::Nothing
     } else if b1.min(b2).min(b3) > room {
         Shown::Free
@@ -685,12 +690,12 @@ mod tests {
 
     #[test]
     fn what_is_said_to_stay_positive_does_and_what_crosses_crosses_once() {
-        // courses of a step: a line, bent, with up to a whole swing
+        // courses of a step: a line, bent, with up to two swings and a half
         let spread = |k: i32, of: f64| (f64::from(k) * of.sqrt()).fract() * 2.0 - 1.0;
         let mut told = [0; 2];
         for k in 0..20_000 {
             let [a, b, c, d, w, phase] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0].map(|of| spread(k, of));
-            let w = std::f64::consts::PI * (1.0 + w);
+            let w = 2.5 * std::f64::consts::PI * (1.0 + w);
             let begins = f64::from(k % 3) * a.abs();
             let course = |x: f64| b * x + c * x * x + d * (w * x + 4.0 * phase).sin();
             let slope = |x: f64| b + 2.0 * c * x + d * w * (w * x + 4.0 * phase).cos();

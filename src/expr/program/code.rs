@@ -202,9 +202,6 @@ impl Core {
             Code::HalfPower(n) => half_power(n, r(a) * r(b), r(c)),
             Code::Compare(op) => from_mask(op.apply(r(a), r(b))),
             Code::Select => S::select(truth(r(a)), r(b), r(c)),
-            Code::CompareSelect(op) if S::BOUNDS && ([c, d] == [a, b] || [d, c] == [a, b]) => {
-                S::select_of_compared(op.apply(r(a), r(b)), r(c), r(d))
-            }
             Code::CompareSelect(op) => S::select(op.apply(r(a), r(b)), r(c), r(d)),
             Code::If => arithmetic_if(r(a), r(b), r(c), r(d)),
             Code::Lookup { table, order } => r(a).lookup(&self.tables[table as usize], order),

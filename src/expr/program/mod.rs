@@ -69,6 +69,8 @@ mod timed;
 pub use batch::Batch;
 pub(crate) use breaks::{Break, Levels};
 pub use builder::{Builder, Folding};
+#[cfg(feature = "solver")]
+pub(crate) use general::Share;
 pub use input::Input;
 pub use machine::{Engine, translation_time};
 pub use node::Value;
