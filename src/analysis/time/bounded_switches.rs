@@ -46,9 +46,8 @@ const SHORTEST: f64 = 1e-9;
 /// Room kept on both sides of what states do in a step, in as many of its lengths.
 const ROOM: f64 = 2.0;
 /// Bound of the way of a switch within a step, over what its values and slopes at the ends say that
-/// it passes, up to which these and the middle tell what it does: two and a half waves have as
-/// much.
-const RESOLVED: f64 = 8.0;
+/// it passes, up to which these and the middle tell what it does: a wave has as much.
+const RESOLVED: f64 = 3.0;
 /// Part of a step that is short: the step ends where so much of it has been shown, and a stretch at
 /// whose end a switch has changed its side is divided no further where its rate has no bound.
 const SHORT: f64 = 0.01;
@@ -266,9 +265,9 @@ impl BoundedSwitches {
             Some([a, b]) => Seen::Look(vec![a, b]),
             None if found.free_to >= t1 => Seen::Nothing,
             None if found.free_to > t0 + SHORT * (t1 - t0) => Seen::Short(found.free_to),
-            None => Seen::Unknown,
+            None => Seen::Look(Vec::new()),
         };
-        let is_decided = seen != Seen::Unknown;
+        let is_decided = seen != Seen::Look(Vec::new());
         self.undecided = match is_decided {
             true => 0,
             false => 2 * self.undecided + 1,
