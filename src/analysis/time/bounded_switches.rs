@@ -208,12 +208,12 @@ impl BoundedSwitches {
         let (y, ydot) = (method.y(), method.ydot());
         let inside = |x: &Interval, room: &Interval| room.lo <= x.lo && x.hi <= room.hi;
         let all = self.unknowns.iter().zip(&self.begin).zip(&self.room);
-        let stays = all.map(|((&k, &begin), room)| {
+        let mut stays = all.map(|((&k, &begin), room)| {
             let [value, rate] = hulls(begin, [y[k], ydot[k]], step.h);
             inside(&value, &room[0]) && inside(&rate, &room[1])
         });
         let time = Interval::between(step.t0, step.t1);
-        if inside(&time, &self.time) && stays.fold(true, |all, stays| all && stays) {
+        if inside(&time, &self.time) && stays.all(|stays| stays) {
             return;
         }
         self.time = Interval::between(step.t0, step.t1 + ROOM * step.h);
@@ -275,7 +275,7 @@ impl BoundedSwitches {
         self.waits = self.undecided;
         if !is_decided {
             let bounds = &self.bounds;
-            (self.which).retain(|&k| bounds[k].re.lo.is_finite() && bounds[k].re.hi.is_finite());
+            (self.which).retain(|&k| is_finite(bounds[k].re));
         }
         Ok(seen)
     }
@@ -403,12 +403,20 @@ impl BoundedSwitches {
         if begins {
             a = a.max(0.0);
         }
-        match course(ordered(re, side).0, ordered(eps[0], side), [a, b], h) {
-            // that there is one is seen, and few others fit in
-            Shown::Nothing if b < 0.0 && h < SHORT * asked.step.h => Shown::Event,
+        let rate = eps[0];
+        match course(ordered(re, side).0, ordered(rate, side), [a, b], h) {
+            // division would end at the shortest stretch only
+            Shown::Nothing if b < 0.0 && h < SHORT * asked.step.h && !is_finite(rate) => {
+                Shown::Event
+            }
             shown => shown,
         }
     }
+}
+
+/// Returns whether both bounds are numbers.
+fn is_finite(bounds: Interval) -> bool {
+    bounds.lo.is_finite() && bounds.hi.is_finite()
 }
 
 /// Returns the bounds of what is multiplied by a sign.
