@@ -189,9 +189,11 @@ impl BoundedSwitches {
         method: &dyn Method<System>,
         asked: Asked<'_>,
     ) -> bool {
-        self.stay_in_room(system, method, asked.step);
         let mut open = std::mem::take(&mut self.open);
         open.clear();
+        if !self.which.is_empty() {
+            self.stay_in_room(system, method, asked.step);
+        }
         open.extend(self.which.iter().filter(|&&k| {
             let free = |k: usize| {
                 let bounds = self.in_room[k];

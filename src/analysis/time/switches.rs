@@ -7,14 +7,15 @@
 //!
 //! While branches are held the rates are smooth, also where a step leads beyond the end of a
 //! branch: no step is rejected because of a switch inside it, and the interpolant on which the
-//! switch is located is as exact as the method. Most steps are far from all switches; that is seen
-//! from values and slopes at both of their ends, without the interpolant:
+//! switch is located is as exact as the method. Whether one comes to zero within a step is told by
+//! bounds of its value and rate (`bounded_switches.rs`). What has no bounds (closures, delays,
+//! unknowns of loops) is seen from values and slopes at both ends of a step:
 //!
 //! ```text
 //! |g| > h max |ġ|   at both ends        so that g cannot have come to zero
 //! ```
 //!
-//! Of the others many are seen to stay on their side by what the method knows of the middle of the
+//! Of others many are seen to stay on their side by what the method knows of the middle of the
 //! step: where the cubic through both ends leads through the value there, it stands for g, and its
 //! control points say on which side it is. Outlines of contacts that may meet within the step are
 //! looked for on the interpolant anyway: from afar their gap has no value.
