@@ -15,11 +15,19 @@
 //! Geometric Design 29 (2012).
 
 use crate::scalar::Interval;
+use std::sync::LazyLock;
 
 /// Degree of the polynomials: that of the interpolant of DOP853, the highest.
 const DEGREE: usize = 7;
 /// Values that determine one.
 pub const NODES: usize = DEGREE + 1;
+
+/// Control points of the polynomials that are 1 at one of the nodes and 0 at the others.
+static SHARES: LazyLock<[[f64; NODES]; NODES]> = LazyLock::new(|| {
+    let nodes = Courses::nodes();
+    let at_one = |i| std::array::from_fn(|j| f64::from(u8::from(i == j)));
+    std::array::from_fn(|i| control_points(&nodes, at_one(i)))
+});
 
 /// Some unknowns within a step.
 #[derive(Clone, Debug, Default)]
@@ -47,10 +55,18 @@ impl Courses {
     pub fn lead_through(&mut self, (t0, h): (f64, f64), values: &[Vec<f64>; NODES], n: usize) {
         (self.t0, self.h) = (t0, h);
         self.points.clear();
-        let nodes = Self::nodes();
+        let shares = &*SHARES;
         self.points.extend((0..n).map(|k| {
-            let at: [f64; NODES] = std::array::from_fn(|i| values[i][k]);
-            control_points(&nodes, at)
+            // what stays as it is has no rate, not even by rounding
+            let begin = values[0][k];
+            let mut points = [begin; NODES];
+            for (value, shares) in values.iter().zip(shares) {
+                let way = value[k] - begin;
+                for (point, share) in points.iter_mut().zip(shares) {
+                    *point += way * share;
+                }
+            }
+            points
         }));
         let of_rate =
             |p: &[f64; NODES]| std::array::from_fn(|i| DEGREE as f64 * (p[i + 1] - p[i]) / h);
@@ -68,7 +84,9 @@ impl Courses {
 /// Returns bounds of a polynomial between two parts of its interval.
 fn over<const N: usize>(mut points: [f64; N], a: f64, b: f64) -> Interval {
     // up to b, then of that from a on
-    part(&mut points, b, true);
+    if b < 1.0 {
+        part(&mut points, b, true);
+    }
     if a > 0.0 {
         part(&mut points, a / b, false);
     }

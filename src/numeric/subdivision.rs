@@ -4,6 +4,7 @@
 //! ```text
 //! [t, t + h]   shown to be free                 →  go on behind it with 2h
 //!              shown to hold an event           →  look closely: at its ends
+//!              shown to be free for a part      →  go on behind that with h/2
 //!              else, longer than the shortest   →  h/2
 //!              else                             →  look closely
 //! ```
@@ -27,12 +28,14 @@ pub struct Search {
 const MOST_STRETCHES: usize = 400;
 
 /// The knowledge of a stretch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shown {
     /// nothing happens in it
     Free,
     /// something does: it need not be divided
     Event,
+    /// nothing happens in it before this time, in s
+    Until(f64),
     /// neither
     Nothing,
 }
@@ -68,10 +71,14 @@ pub fn first<C, T, S: Into<Shown>>(
             break;
         }
         let to = (from + h).min(end);
+        h = to - from;
         let shown = show(course, from, to).into();
         if shown == Shown::Free {
             from = to;
             h *= 2.0;
+        } else if let (Shown::Until(free), true) = (shown, h > search.shortest) {
+            from = free.clamp(from, to);
+            h *= 0.5;
         } else if shown == Shown::Nothing && h > search.shortest {
             h *= 0.5;
         } else if let Some(found) = event(course, from, to) {

@@ -112,12 +112,22 @@ impl Interval {
     }
 
     /// Returns the interval of the values at all corners of the rectangle of two intervals.
+    #[inline(always)]
     fn corners(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        if self.is_none() || other.is_none() {
-            return Self::NONE;
+        let (a, b) = (f(self.lo, other.lo), f(self.lo, other.hi));
+        let (c, d) = (f(self.hi, other.lo), f(self.hi, other.hi));
+        if !((a + b) + (c + d)).is_nan() {
+            let least = |x: f64, y: f64| if x < y { x } else { y };
+            let most = |x: f64, y: f64| if x > y { x } else { y };
+            return Self {
+                lo: least(least(a, b), least(c, d)),
+                hi: most(most(a, b), most(c, d)),
+            };
         }
-        let [a, b] = [self.lo, self.hi].map(|x| other.monotone(|y| f(x, y)));
-        a.hull(b)
+        match self.is_none() || other.is_none() {
+            true => Self::NONE,
+            false => Self::between(a, b).hull(Self::between(c, d)),
+        }
     }
 
     /// Returns the part inside a domain.
@@ -158,17 +168,16 @@ impl Interval {
     }
 
     fn sum(self, b: Self) -> Self {
-        if self.is_none() || b.is_none() {
-            return Self::NONE;
-        }
         let all = Self {
             lo: self.lo + b.lo,
             hi: self.hi + b.hi,
         };
-        if all.lo.is_nan() || all.hi.is_nan() {
-            Self::ANY
-        } else {
+        if !(all.lo.is_nan() || all.hi.is_nan()) {
             all
+        } else if self.is_none() || b.is_none() {
+            Self::NONE
+        } else {
+            Self::ANY
         }
     }
     fn negative(self) -> Self {
@@ -181,10 +190,16 @@ impl Interval {
         self.sum(b.negative())
     }
     fn product(self, b: Self) -> Self {
-        let zero = Self { lo: 0.0, hi: 0.0 };
-        if !(self.is_none() || b.is_none()) && (self == zero || b == zero) {
-            return zero;
+        let all = self.corners(b, |x, y| x * y);
+        match all == Self::ANY {
+            true => self.unbounded_product(b),
+            false => all,
         }
+    }
+    /// Returns the product where a bound may be infinite: zero times a number between such bounds
+    /// is zero.
+    #[cold]
+    fn unbounded_product(self, b: Self) -> Self {
         self.corners(b, |x, y| if x == 0.0 || y == 0.0 { 0.0 } else { x * y })
     }
     fn quotient(self, b: Self) -> Self {

@@ -293,7 +293,8 @@ impl Branches {
             return Default::default();
         };
         let layout = self.row.numbers;
-        let unbound: Vec<usize> = (layout.loops())
+        let unbound: Vec<usize> = (layout.downstream())
+            .chain(layout.loops())
             .chain(layout.external())
             .chain(self.row.more())
             .collect();
@@ -312,13 +313,18 @@ impl Branches {
         time: Interval,
         unknowns: impl Iterator<Item = (usize, [Interval; 2])>,
     ) {
-        self.put(numbers);
-        self.bounded_row.clear();
-        let row = self.numbers.iter().map(|&x| Dual::constant(x));
-        self.bounded_row.extend(row);
-        self.bounded_row[Layout::TIME] = Dual::variable(time, 0);
+        let row = &mut self.bounded_row;
+        row.resize(self.row.len(), Dual::constant(f64::NAN));
+        row[Layout::TIME] = Dual::variable(time, 0);
         for (k, [re, rate]) in unknowns {
-            self.bounded_row[self.row.numbers.y_at(k)] = Dual { re, eps: [rate] };
+            row[self.row.numbers.y_at(k)] = Dual { re, eps: [rate] };
+        }
+        // no other numbers are read by what is bounded
+        for k in self.row.numbers.turns() {
+            row[k] = Dual::constant(numbers[k]);
+        }
+        for (row, &side) in row[self.row.sides()].iter_mut().zip(&self.sides) {
+            *row = Dual::constant(side);
         }
     }
 
@@ -331,13 +337,23 @@ impl Branches {
     }
 
     /// Bounds one switching function and its rate as [`bound`](Self::bound) does.
-    pub(super) fn bound_one(&mut self, k: usize, bounds: &mut Dual<1, Interval>) {
+    pub(super) fn bound_one(&mut self, k: usize) -> Dual<1, Interval> {
         let Some(Switching { switches, .. }) = &self.switching else {
-            return;
+            return Dual::constant(f64::NAN);
         };
-        let share = self.shares.entry(k);
-        let share = share.or_insert_with(|| switches.share::<Dual<1, Interval>>(k));
-        *bounds = switches.eval_share(share, &self.bounded_row, &mut self.bound_work);
+        let share = share_of(&mut self.shares, switches, k);
+        switches.eval_share(share, &self.bounded_row, &mut self.bound_work)
+    }
+
+    /// Returns the unknowns that one switching function reads.
+    pub(super) fn unknowns_of(&mut self, k: usize) -> Vec<usize> {
+        let Some(Switching { switches, .. }) = &self.switching else {
+            return Vec::new();
+        };
+        let y = self.row.numbers.y();
+        let places = share_of(&mut self.shares, switches, k).places();
+        let in_y = places.filter(|place| y.contains(place));
+        in_y.map(|place| place - y.start).collect()
     }
 
     /// Returns whether the numbers say the same branches as are held.
@@ -362,6 +378,12 @@ impl Branches {
         let times = self.watched_angles.iter().map(time);
         times.filter(|h| !h.is_nan()).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// Returns what a switching function needs of the program of all.
+fn share_of<'s>(shares: &'s mut BTreeMap<usize, Share>, switches: &Program, k: usize) -> &'s Share {
+    let share = shares.entry(k);
+    share.or_insert_with(|| switches.share::<Dual<1, Interval>>(k))
 }
 
 /// Runs the program of the rates with branches held; false where there is none.

@@ -310,8 +310,13 @@ impl System {
     }
 
     /// Bounds one of them.
-    pub(super) fn bound_switch(&mut self, k: usize, bounds: &mut Dual<1, Interval>) {
-        self.recorded.branches.bound_one(k, bounds);
+    pub(super) fn bound_switch(&mut self, k: usize) -> Dual<1, Interval> {
+        self.recorded.branches.bound_one(k)
+    }
+
+    /// Returns the unknowns that one of them reads.
+    pub(super) fn unknowns_of_switch(&mut self, k: usize) -> Vec<usize> {
+        self.recorded.branches.unknowns_of(k)
     }
 
     /// Returns whether the motion would stay where switch `k` changes, while those slide that do.

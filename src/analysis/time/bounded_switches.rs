@@ -27,7 +27,9 @@
 //! and has one crossing if ġ keeps its sign and g changes it. (Branches are held: what is still
 //! selected within a program bends there, and does not jump, so that its rates are between both.)
 //! So what begins at zero and leaves it needs no short stretches, and the work grows with the
-//! logarithm of how near a touch is.
+//! logarithm of how near a touch is. Where that is not shown, the switch comes to zero no sooner
+//! than the steepest line does, g(a)/|ṙ|: so much of the stretch is free. Stretches are looked at
+//! for one switch after the other, and for each only before what those before it do.
 //!
 //! A switch that divides by bounds which hold zero has none itself, however short the stretch: it
 //! is asked for no more. Where stretches did not decide, twice as many steps go by before the next
@@ -36,7 +38,7 @@
 use crate::analysis::system::System;
 use crate::numeric::bernstein::{Courses, NODES, hull};
 use crate::numeric::event::{MOST_NAMED, sign};
-use crate::numeric::subdivision::{self, Search, Shown};
+use crate::numeric::subdivision::{self, Found, Search, Shown};
 use crate::numeric::{Failure, Method, Step};
 use crate::scalar::{Dual, Interval, Scalar};
 
@@ -95,9 +97,11 @@ pub(super) struct BoundedSwitches {
     samples: [Vec<f64>; NODES],
     /// bounds of all switches and of their rates   (n)
     bounds: Vec<Dual<1, Interval>>,
-    /// the stretch that was looked at last, and the values of all switches at its ends   (n each)
-    stretch: [f64; 2],
-    ends: [Vec<f64>; 2],
+    /// the places in `unknowns` of what each reads, once it was asked   (n)
+    reads: Vec<Option<Vec<usize>>>,
+    /// times at which all switches were evaluated for one of them, and their values   (n each)
+    times: Vec<f64>,
+    values: Vec<Vec<f64>>,
     /// those that have not been shown to be free in the step under way
     open: Vec<usize>,
     /// the room: bounds of the time, and of the unknowns and their rates   (u); bounds of all
@@ -105,6 +109,8 @@ pub(super) struct BoundedSwitches {
     time: Interval,
     room: Vec<[Interval; 2]>,
     in_room: Vec<Dual<1, Interval>>,
+    /// whether the last step was shown to be free as a whole: only then a room is worth its bounds
+    is_calm: bool,
     state: Vec<f64>,
     /// steps that go by before one is looked at, and as many after the last that stretches did not
     /// decide
@@ -134,12 +140,14 @@ impl BoundedSwitches {
             courses: Courses::default(),
             samples: std::array::from_fn(|_| vec![0.0; u]),
             bounds: vec![Dual::constant(0.0); n],
-            stretch: [f64::NAN; 2],
-            ends: [vec![0.0; n], vec![0.0; n]],
+            reads: vec![None; n],
+            times: Vec::new(),
+            values: Vec::new(),
             open: Vec::new(),
             time: NO_TIME,
             room: vec![[Interval::ANY; 2]; u],
             in_room: vec![Dual::constant(0.0); n],
+            is_calm: false,
             state: Vec::new(),
             waits: 0,
             undecided: 0,
@@ -191,22 +199,27 @@ impl BoundedSwitches {
     ) -> bool {
         let mut open = std::mem::take(&mut self.open);
         open.clear();
-        if !self.which.is_empty() {
-            self.stay_in_room(system, method, asked.step);
-        }
+        let stays = !self.which.is_empty() && self.stays_in_room(system, method, asked.step);
         open.extend(self.which.iter().filter(|&&k| {
             let free = |k: usize| {
                 let bounds = self.in_room[k];
-                self.of_one(k, bounds, asked, asked.values, asked.step.h, true) == Shown::Free
+                let values = asked.values.map(|g| g[k]);
+                of_one(k, bounds, asked, values, asked.step.h, true) == Shown::Free
             };
-            asked.sides[k] != 0 && !free(k)
+            asked.sides[k] != 0 && !(stays && free(k))
         }));
         self.open = open;
         self.open.is_empty()
     }
 
-    /// Bounds the switches in another room where a step leads out of the last one.
-    fn stay_in_room(&mut self, system: &mut System, method: &dyn Method<System>, step: &Step) {
+    /// Returns whether a step stays in the room, of which another is made where it leads out of the
+    /// last.
+    fn stays_in_room(
+        &mut self,
+        system: &mut System,
+        method: &dyn Method<System>,
+        step: &Step,
+    ) -> bool {
         let (y, ydot) = (method.y(), method.ydot());
         let inside = |x: &Interval, room: &Interval| room.lo <= x.lo && x.hi <= room.hi;
         let all = self.unknowns.iter().zip(&self.begin).zip(&self.room);
@@ -216,7 +229,11 @@ impl BoundedSwitches {
         });
         let time = Interval::between(step.t0, step.t1);
         if inside(&time, &self.time) && stays.all(|stays| stays) {
-            return;
+            return true;
+        }
+        self.time = NO_TIME;
+        if !self.is_calm {
+            return false;
         }
         self.time = Interval::between(step.t0, step.t1 + ROOM * step.h);
         let all = self.unknowns.iter().zip(&self.begin).zip(&mut self.room);
@@ -226,9 +243,11 @@ impl BoundedSwitches {
         let unknowns = self.unknowns.iter().copied().zip(self.room.iter().copied());
         system.take_bounds(self.time, unknowns);
         system.bound_switches(&mut self.in_room);
+        true
     }
 
-    /// Looks at a step by bounds of the interpolant over stretches of it, at those that are open.
+    /// Looks at a step by bounds of the interpolant over stretches of it, at those that are open,
+    /// one after the other: at each only before what the others do.
     ///
     /// # Errors
     /// The interpolant has no value within the step.
@@ -242,31 +261,25 @@ impl BoundedSwitches {
             self.waits -= 1;
             return Ok(Seen::Unknown);
         }
-        let Step { t0, t1, .. } = *asked.step;
+        let Step { t0, t1, h, .. } = *asked.step;
         self.follow(system, method, asked.step)?;
-        let search = Search {
-            first: 0.5 * (t1 - t0),
-            shortest: (SHORTEST * (t1 - t0)).max(8.0 * f64::EPSILON * t1.abs()),
-        };
-        self.stretch = [f64::NAN, t0];
-        self.ends[1].copy_from_slice(asked.values[0]);
-        let mut course = (&mut *self, &mut *system, &mut *method);
-        let found = subdivision::first(
-            &mut course,
-            (t0, t1),
-            search,
-            |(switches, system, method), a, b| switches.of_stretch(system, *method, asked, [a, b]),
-            |(switches, ..), a, b| {
-                let at_end = &switches.ends[1];
-                let crossed = |&k: &usize| sign(at_end[k]) == -asked.sides[k] && at_end[k] != 0.0;
-                let crossed = switches.open.iter().any(crossed);
-                crossed.then_some([a, b])
-            },
-        );
-        let seen = match found.event {
-            Some([a, b]) => Seen::Look(vec![a, b]),
-            None if found.free_to >= t1 => Seen::Nothing,
-            None if found.free_to > t0 + SHORT * (t1 - t0) => Seen::Short(found.free_to),
+        let (mut end, mut event, mut unbounded) = (t1, None, None);
+        let open = std::mem::take(&mut self.open);
+        for &k in &open {
+            let found = self.first_of_one(system, method, asked, (k, end));
+            if let Some([a, b]) = found.event {
+                end = self.narrowed(system, method, asked, (k, [a, b]));
+                event = Some(vec![a, end]);
+            } else if found.free_to < end {
+                (end, event) = (found.free_to, None);
+                unbounded = (!is_finite(self.bounds[k].re)).then_some(k);
+            }
+        }
+        self.open = open;
+        let seen = match event {
+            Some(times) => Seen::Look(times),
+            None if end >= t1 => Seen::Nothing,
+            None if end > t0 + SHORT * h => Seen::Short(end),
             None => Seen::Look(Vec::new()),
         };
         let is_decided = seen != Seen::Look(Vec::new());
@@ -276,10 +289,62 @@ impl BoundedSwitches {
         };
         self.waits = self.undecided;
         if !is_decided {
-            let bounds = &self.bounds;
-            (self.which).retain(|&k| is_finite(bounds[k].re));
+            self.which.retain(|&k| Some(k) != unbounded);
         }
         Ok(seen)
+    }
+
+    /// Finds the first stretch, before `end`, in which one of them comes to zero.
+    fn first_of_one(
+        &mut self,
+        system: &mut System,
+        method: &mut dyn Method<System>,
+        asked: Asked<'_>,
+        (k, end): (usize, f64),
+    ) -> Found<[f64; 2]> {
+        let Step { t0, t1, h, .. } = *asked.step;
+        self.times.clear();
+        let search = Search {
+            // the whole step has been looked at
+            first: if end < t1 { end - t0 } else { 0.5 * h },
+            shortest: shortest(asked.step),
+        };
+        let mut course = (self, system, method);
+        subdivision::first(
+            &mut course,
+            (t0, end),
+            search,
+            |(switches, system, method), a, b| {
+                switches.of_stretch(system, *method, asked, (k, [a, b]))
+            },
+            |(switches, system, method), a, b| {
+                let at_end = switches.value(system, *method, asked, (k, b));
+                let crossed = at_end.is_some_and(|g| sign(g) == -asked.sides[k] && g != 0.0);
+                crossed.then_some([a, b])
+            },
+        )
+    }
+
+    /// Returns a time at which one has crossed zero that is not far behind where it does: others
+    /// need not be looked at behind it.
+    fn narrowed(
+        &mut self,
+        system: &mut System,
+        method: &mut dyn Method<System>,
+        asked: Asked<'_>,
+        (k, [mut a, mut b]): (usize, [f64; 2]),
+    ) -> f64 {
+        while b - a > (SHORT * (b - asked.step.t0)).max(shortest(asked.step)) {
+            let middle = 0.5 * (a + b);
+            let Some(value) = self.value(system, method, asked, (k, middle)) else {
+                break;
+            };
+            match sign(value) == -asked.sides[k] {
+                true => b = middle,
+                false => a = middle,
+            }
+        }
+        b
     }
 
     /// Looks at a step by bounds of the whole of it, at those that are open.
@@ -300,13 +365,13 @@ impl BoundedSwitches {
         let mut whole = Whole::Free;
         let mut open = std::mem::take(&mut self.open);
         open.retain(|&k| {
-            system.bound_switch(k, &mut self.bounds[k]);
-            let bounds = self.bounds[k];
-            let of_one = match self.of_one(k, bounds, asked, asked.values, h, true) {
+            let bounds = system.bound_switch(k);
+            let values = asked.values.map(|g| g[k]);
+            let of_one = match of_one(k, bounds, asked, values, h, true) {
                 Shown::Free => return false,
                 Shown::Event => Whole::Event,
-                Shown::Nothing => {
-                    let [g0, g1] = asked.values.map(|g| g[k]);
+                Shown::Until(_) | Shown::Nothing => {
+                    let [g0, g1] = values;
                     let [slope0, slope1] = asked.slopes.map(|slope| slope[k]);
                     let span = hulls([g0, slope0], [g1, slope1], h)[0];
                     let most = RESOLVED * (span.hi - span.lo) / h;
@@ -321,6 +386,7 @@ impl BoundedSwitches {
             true
         });
         self.open = open;
+        self.is_calm = whole == Whole::Free;
         whole
     }
 
@@ -351,69 +417,100 @@ impl BoundedSwitches {
         Ok(())
     }
 
-    /// Returns what a stretch of a step shows; the values at its ends are `ends` afterwards.
+    /// Returns what a stretch of a step shows of one of them.
     fn of_stretch(
         &mut self,
         system: &mut System,
         method: &mut dyn Method<System>,
         asked: Asked<'_>,
-        [from, to]: [f64; 2],
+        (k, [from, to]): (usize, [f64; 2]),
     ) -> Shown {
-        if self.stretch[1] == from {
-            self.ends.swap(0, 1);
-        }
-        self.stretch = [from, to];
-        if to >= asked.step.t1 {
-            self.ends[1].copy_from_slice(asked.values[1]);
-        } else if method.interpolate(system, to, &mut self.state).is_ok() {
-            system.switches(to, &self.state, &mut self.ends[1]);
-        } else {
-            return Shown::Nothing;
-        }
-        let courses = &self.courses;
-        let all = self.unknowns.iter().enumerate();
-        let unknowns = all.map(|(j, &k)| (k, courses.bound(j, from, to)));
-        system.take_bounds(Interval::between(from, to), unknowns);
-        let [at_from, at_to] = &self.ends;
-        let begins = from <= asked.step.t0;
-        let mut shown = Shown::Free;
-        for &k in &self.open {
-            system.bound_switch(k, &mut self.bounds[k]);
-            let bounds = self.bounds[k];
-            match self.of_one(k, bounds, asked, [at_from, at_to], to - from, begins) {
-                Shown::Free => {}
-                Shown::Event => shown = Shown::Event,
-                Shown::Nothing => return Shown::Nothing,
-            }
-        }
-        shown
-    }
-
-    /// Returns what bounds and the values at both ends of a stretch of length `h` show of one of
-    /// them; `begins`: whether it is put there onto the side on which it is held.
-    fn of_one(
-        &self,
-        k: usize,
-        Dual { re, eps }: Dual<1, Interval>,
-        asked: Asked<'_>,
-        values: [&[f64]; 2],
-        h: f64,
-        begins: bool,
-    ) -> Shown {
+        let reads = self.reads[k].get_or_insert_with(|| {
+            let unknowns = system.unknowns_of_switch(k).into_iter();
+            unknowns
+                .filter_map(|y| self.unknowns.binary_search(&y).ok())
+                .collect()
+        });
+        let bounded = |&j: &usize| (self.unknowns[j], self.courses.bound(j, from, to));
+        system.take_bounds(Interval::between(from, to), reads.iter().map(bounded));
+        let bounds = system.bound_switch(k);
+        self.bounds[k] = bounds;
         let side = f64::from(asked.sides[k]);
-        let [mut a, b] = values.map(|g| side * g[k]);
-        if begins {
-            a = a.max(0.0);
+        if ordered(bounds.re, side).0 >= 0.0 {
+            return Shown::Free;
         }
-        let rate = eps[0];
-        match course(ordered(re, side).0, ordered(rate, side), [a, b], h) {
-            // division would end at the shortest stretch only
-            Shown::Nothing if b < 0.0 && h < SHORT * asked.step.h && !is_finite(rate) => {
-                Shown::Event
+        let ends = [from, to].map(|t| self.value(system, method, asked, (k, t)));
+        let [Some(a), Some(b)] = ends else {
+            return Shown::Nothing;
+        };
+        let begins = from <= asked.step.t0;
+        match of_one(k, bounds, asked, [a, b], to - from, begins) {
+            Shown::Nothing => {
+                // it comes to zero no sooner than its steepest line
+                let slowest = ordered(bounds.eps[0], side).0;
+                match side * a > 0.0 && slowest < 0.0 {
+                    true => Shown::Until(from + (1.0 - SHORT) * (side * a / -slowest)),
+                    false => Shown::Nothing,
+                }
             }
             shown => shown,
         }
     }
+
+    /// Returns the value of one of them at a time of the step; `None`: it has none.
+    fn value(
+        &mut self,
+        system: &mut System,
+        method: &mut dyn Method<System>,
+        asked: Asked<'_>,
+        (k, t): (usize, f64),
+    ) -> Option<f64> {
+        if t <= asked.step.t0 {
+            return Some(asked.values[0][k]);
+        }
+        if t >= asked.step.t1 {
+            return Some(asked.values[1][k]);
+        }
+        if let Some(i) = self.times.iter().position(|&known| known == t) {
+            return Some(self.values[i][k]);
+        }
+        method.interpolate(system, t, &mut self.state).ok()?;
+        let i = self.times.len();
+        if self.values.len() <= i {
+            self.values.push(vec![0.0; self.bounds.len()]);
+        }
+        self.times.push(t);
+        system.switches(t, &self.state, &mut self.values[i]);
+        Some(self.values[i][k])
+    }
+}
+
+/// Returns what bounds of one of them and its values at both ends of a stretch of length `h` show;
+/// `begins`: whether it is put there onto the side on which it is held.
+fn of_one(
+    k: usize,
+    Dual { re, eps }: Dual<1, Interval>,
+    asked: Asked<'_>,
+    values: [f64; 2],
+    h: f64,
+    begins: bool,
+) -> Shown {
+    let side = f64::from(asked.sides[k]);
+    let [mut a, b] = values.map(|g| side * g);
+    if begins {
+        a = a.max(0.0);
+    }
+    let rate = eps[0];
+    match course(ordered(re, side).0, ordered(rate, side), [a, b], h) {
+        // division would end at the shortest stretch only
+        Shown::Nothing if b < 0.0 && h < SHORT * asked.step.h && !is_finite(rate) => Shown::Event,
+        shown => shown,
+    }
+}
+
+/// Returns the length of the shortest stretch of a step that is divided no further, in s.
+fn shortest(step: &Step) -> f64 {
+    (SHORTEST * step.h).max(8.0 * f64::EPSILON * step.t1.abs())
 }
 
 /// Returns whether both bounds are numbers.

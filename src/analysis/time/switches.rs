@@ -483,7 +483,7 @@ impl Switches {
         match shown {
             Shown::Free => Seen::Nothing,
             Shown::Event => Seen::Look(Vec::new()),
-            Shown::Nothing => {
+            Shown::Until(_) | Shown::Nothing => {
                 let asked = Asked {
                     step,
                     sides: &self.asked,
@@ -514,7 +514,7 @@ impl Switches {
             match self.cubic_tells(k, step.h) {
                 Shown::Free => {}
                 Shown::Event => all = Shown::Event,
-                Shown::Nothing => return Shown::Nothing,
+                Shown::Until(_) | Shown::Nothing => return Shown::Nothing,
             }
         }
         all

@@ -11,6 +11,16 @@ use crate::scalar::Scalar;
 pub(crate) struct Share {
     instructions: Vec<u32>,
     register: u32,
+    /// inputs that it reads: register and place
+    inputs: Vec<(u32, u32)>,
+}
+
+#[cfg(feature = "solver")]
+impl Share {
+    /// Returns the places of the inputs that it reads.
+    pub fn places(&self) -> impl Iterator<Item = usize> {
+        self.inputs.iter().map(|&(_, place)| place as usize)
+    }
 }
 
 impl Program {
@@ -45,13 +55,19 @@ impl Program {
             }
         }
         instructions.reverse();
+        let first = core.constants.len();
+        let all = core.used.iter().enumerate();
+        let read = all.filter(|&(k, _)| needed[first + k]);
         Share {
             instructions,
             register,
+            inputs: read
+                .map(|(k, &place)| ((first + k) as u32, place))
+                .collect(),
         }
     }
 
-    /// Evaluates one output as [`Program::eval`] does all.
+    /// Evaluates one output as [`Program::eval`] does all. All inputs are given.
     #[cfg(feature = "solver")]
     pub(crate) fn eval_share<S: Scalar>(
         &self,
@@ -60,7 +76,13 @@ impl Program {
         work: &mut Work<S>,
     ) -> S {
         let core = self.core_over::<S>();
-        let registers = self.registers(core, inputs, work);
+        if work.owner != self.id {
+            self.prepare(core, work);
+        }
+        let registers = &mut work.registers[..];
+        for &(register, place) in &share.inputs {
+            registers[register as usize] = inputs[place as usize];
+        }
         for &at in &share.instructions {
             core.perform(&core.code[at as usize], registers);
         }
