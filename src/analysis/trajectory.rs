@@ -84,6 +84,8 @@ pub struct EnergyFlow {
     pub imbalance: f64,
 }
 
+/// Error of the balance of energy, over all energy, from which on it is told.
+pub(in crate::analysis) const TOLD_ENERGY: f64 = 0.2;
 /// Roundings of potential energies that a balance may be off by.
 const ROUNDINGS: f64 = 4.0;
 

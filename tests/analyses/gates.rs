@@ -125,6 +125,25 @@ fn off(
     (last(&s, column) - 1.0).abs()
 }
 
+/// A bump of half a width `w` around a place on x, and its integral over x, of one of seven shapes.
+fn bump(shape: usize, a: f64, w: f64) -> (String, f64) {
+    use std::f64::consts::{PI, SQRT_2};
+    let x = format!("(DX(2,1)-({a:?}))");
+    let sides = |name: &str| {
+        let (before, behind) = (-w, w);
+        format!("{name}({x},{before:?},0,0,1)*{name}({x},0,1,{behind:?},0)")
+    };
+    match shape {
+        0 => (sides("STEP"), w),
+        1 => (sides("STEP5"), w),
+        2 => (sides("HAVSIN"), w),
+        3 => (format!("MAX(0,1-({x}/{w:?})**2)"), 4.0 / 3.0 * w),
+        4 => (format!("MAX(0,1-ABS({x}/{w:?}))"), w),
+        5 => (format!("EXP(-({x}/{w:?})**2)"), PI.sqrt() * w),
+        _ => (format!("1/(1+({x}/{w:?})**4)"), PI / SQRT_2 * w),
+    }
+}
+
 fn way() -> impl Strategy<Value = Way> {
     let speed = prop_oneof![-1.0f64..-0.1, 0.1f64..1.0];
     ((-1.0f64..1.0, -1.0f64..1.0), (speed.clone(), speed)).prop_map(|(at, velocity)| Way {
@@ -177,5 +196,34 @@ proptest! {
         let gate = way.top(end * 10f64.powf(decades));
         let off = off(way, &gate, door, method, 10f64.powi(-digits), steps, end);
         prop_assert!(off < 1e-4, "{method} 1e-{digits} {steps} {door}: {off:e}: {}, {:?}", gate.function, gate.passed);
+    }
+
+    /// What is smooth but narrow is felt as a whole, down to some millionths of the way.
+    #[test]
+    fn a_narrow_bump_acts_with_all_of_its_impulse(
+        way in way(),
+        shape in 0usize..7,
+        door in 0usize..3,
+        at in 0.2f64..0.8,
+        decades in -5.0f64..-2.0,
+        end in 1.0f64..10.0,
+        method in prop::sample::select(&["AUTO", "DOP853", "RADAU5"][..]),
+        digits in 4i32..8,
+        steps in prop::sample::select(&[1usize, 7, 60][..]),
+    ) {
+        let [place, _] = way.place(at * end);
+        let (function, integral) = bump(shape, place, end * 10f64.powf(decades) * 0.1);
+        let force = way.velocity[0].abs() / integral;
+        let along_z = "SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=2, J=1, FUNCTION=";
+        let (acts, column) = match door {
+            0 => (format!("{along_z}{force:?}*{function}\n"), "VZ(2,1)"),
+            1 => (format!("DIFF/1, IC=0, FUNCTION={force:?}*{function}\n"), "DIF(1)"),
+            _ => (format!("VARIABLE/1, FUNCTION={function}\n{along_z}{force:?}*VARVAL(1)\n"), "VZ(2,1)"),
+        };
+        let text = format!("{}{acts}", way.part());
+        let mut s = begin(model(&text), "bump", options_by(&[column], method, 10f64.powi(-digits)));
+        go(&mut s, Analysis::Dynamic, end, steps);
+        let off = (last(&s, column) - 1.0).abs();
+        prop_assert!(off < 0.01, "{method} 1e-{digits} {steps} {door}: {off:e}: {function}");
     }
 }

@@ -14,7 +14,7 @@ use crate::analysis::system::System;
 use crate::analysis::time::continuation::Continuation;
 use crate::analysis::time::options::{self, Options};
 use crate::analysis::time::{dynamics, kinematics};
-use crate::analysis::trajectory::{Ended, SETS_STEPS, Takeover, Trajectory};
+use crate::analysis::trajectory::{Ended, SETS_STEPS, TOLD_ENERGY, Takeover, Trajectory};
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::diagnostic::{Diagnostic, counted};
@@ -406,8 +406,6 @@ impl Session {
 const FINE_REQUEST: f64 = 1e-7;
 /// Fewest steps whose roundings add up.
 const FEWEST_STEPS: usize = 100;
-/// Error of the balance of energy, over all energy, from which on it is told.
-const TOLD_ENERGY: f64 = 0.2;
 /// The least number of steps held short by stability that is told.
 const TOLD_STEPS: usize = 200;
 

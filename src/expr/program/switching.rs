@@ -6,6 +6,7 @@
 //! there.
 
 use super::builder::Builder;
+use super::expand::Expand;
 use super::input::Input;
 use super::node::{Node, Value};
 use super::operation::{BinaryOp, Comparison, UnaryOp};
@@ -26,7 +27,8 @@ impl Builder {
     /// Comparisons for equality are left out, and so are those of zero with what is never negative:
     /// they hold at isolated points only.
     pub fn switching(&mut self, outputs: &[Value]) -> Vec<Value> {
-        self.branches(outputs).differences
+        let outputs = self.expanded(outputs, Expand::Calls);
+        self.branches(&outputs).differences
     }
 
     /// Returns the outputs with the branches of `sources` held, and the values that change sign
