@@ -286,8 +286,8 @@ impl Branches {
         }
     }
 
-    /// Returns which switching functions can be bounded, and the unknowns that these read: nothing
-    /// bounds values of the past, closures, or the unknowns of loops.
+    /// Returns which switching functions can be bounded, and the unknowns that these read, those of
+    /// loops after those of the method: nothing bounds values of the past or closures.
     pub(super) fn bounded(&self) -> (Vec<usize>, Vec<usize>) {
         let Some(Switching { switches, .. }) = &self.switching else {
             return Default::default();
@@ -296,13 +296,25 @@ impl Branches {
         let unbound: Vec<usize> = (layout.downstream())
             .chain(layout.loops())
             .chain(layout.external())
-            .chain(self.row.more())
             .collect();
         let unbound = switches.outputs_reading(&unbound);
         let bounded: Vec<usize> = (0..unbound.len()).filter(|&k| !unbound[k]).collect();
-        let read = |&k: &usize| !bounded.is_empty() && switches.reads(layout.y_at(k));
-        let unknowns = (0..layout.n_y()).filter(read).collect();
+        let read = |&k: &usize| !bounded.is_empty() && switches.reads(self.unknown_at(k));
+        let unknowns = (0..layout.n_y() + self.row.n_more).filter(read).collect();
         (bounded, unknowns)
+    }
+
+    /// Returns the place in the row of an unknown of the method, or of a loop.
+    fn unknown_at(&self, k: usize) -> usize {
+        match k.checked_sub(self.row.numbers.n_y()) {
+            Some(k) => self.row.more().start + k,
+            None => self.row.numbers.y_at(k),
+        }
+    }
+
+    /// Returns the unknowns of loops at the last look at the switches.
+    pub(super) fn loop_unknowns(&self) -> &[f64] {
+        self.numbers.get(self.row.more()).unwrap_or(&[])
     }
 
     /// Takes bounds of the time and of the unknowns that [`bounded`](Self::bounded) names, with
@@ -313,11 +325,11 @@ impl Branches {
         time: Interval,
         unknowns: impl Iterator<Item = (usize, [Interval; 2])>,
     ) {
-        let row = &mut self.bounded_row;
+        let mut row = std::mem::take(&mut self.bounded_row);
         row.resize(self.row.len(), Dual::constant(f64::NAN));
         row[Layout::TIME] = Dual::variable(time, 0);
         for (k, [re, rate]) in unknowns {
-            row[self.row.numbers.y_at(k)] = Dual { re, eps: [rate] };
+            row[self.unknown_at(k)] = Dual { re, eps: [rate] };
         }
         // no other numbers are read by what is bounded
         for k in self.row.numbers.turns() {
@@ -326,6 +338,7 @@ impl Branches {
         for (row, &side) in row[self.row.sides()].iter_mut().zip(&self.sides) {
             *row = Dual::constant(side);
         }
+        self.bounded_row = row;
     }
 
     /// Bounds all switching functions and their rates, over what bounds were taken last
@@ -345,15 +358,19 @@ impl Branches {
         switches.eval_share(share, &self.bounded_row, &mut self.bound_work)
     }
 
-    /// Returns the unknowns that one switching function reads.
+    /// Returns which unknowns of [`bounded`](Self::bounded) one switching function reads.
     pub(super) fn unknowns_of(&mut self, k: usize) -> Vec<usize> {
         let Some(Switching { switches, .. }) = &self.switching else {
             return Vec::new();
         };
-        let y = self.row.numbers.y();
+        let (y, more) = (self.row.numbers.y(), self.row.more());
         let places = share_of(&mut self.shares, switches, k).places();
-        let in_y = places.filter(|place| y.contains(place));
-        in_y.map(|place| place - y.start).collect()
+        let unknown = |place: usize| match place {
+            _ if y.contains(&place) => Some(place - y.start),
+            _ if more.contains(&place) => Some(y.len() + place - more.start),
+            _ => None,
+        };
+        places.filter_map(unknown).collect()
     }
 
     /// Returns whether the numbers say the same branches as are held.

@@ -293,6 +293,12 @@ impl System {
         self.recorded.branches.bounded()
     }
 
+    /// Returns the unknowns of loops at the last look at the switching functions; they count as
+    /// unknowns after those of the method.
+    pub(super) fn loop_unknowns(&self) -> &[f64] {
+        self.recorded.branches.loop_unknowns()
+    }
+
     /// Takes bounds of the time and of the unknowns that switching functions read, with their
     /// rates; branches are held as they are.
     pub(super) fn take_bounds(

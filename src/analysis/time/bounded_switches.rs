@@ -88,8 +88,11 @@ pub(super) enum Whole {
 pub(super) struct BoundedSwitches {
     /// which   (m)
     which: Vec<usize>,
-    /// unknowns that they read   (u)
+    /// unknowns that they read, those of loops after those of the method   (u)
     unknowns: Vec<usize>,
+    n_y: usize,
+    /// values and rates of the unknowns of loops at the end of the step
+    loops: [Vec<f64>; 2],
     /// values and rates of these at the beginning of the step   (u)
     begin: Vec<[f64; 2]>,
     courses: Courses,
@@ -112,6 +115,8 @@ pub(super) struct BoundedSwitches {
     /// whether the last step was shown to be free as a whole: only then a room is worth its bounds
     is_calm: bool,
     state: Vec<f64>,
+    /// values of all switches where only the unknowns of loops are wanted   (n)
+    scratch: Vec<f64>,
     /// steps that go by before one is looked at, and as many after the last that stretches did not
     /// decide
     waits: usize,
@@ -136,6 +141,8 @@ impl BoundedSwitches {
         Self {
             which,
             unknowns,
+            n_y: system.scene.layout.n_y(),
+            loops: Default::default(),
             begin: vec![[0.0; 2]; u],
             courses: Courses::default(),
             samples: std::array::from_fn(|_| vec![0.0; u]),
@@ -149,15 +156,40 @@ impl BoundedSwitches {
             in_room: vec![Dual::constant(0.0); n],
             is_calm: false,
             state: Vec::new(),
+            scratch: vec![0.0; n],
             waits: 0,
             undecided: 0,
         }
     }
 
-    /// Takes the state at the beginning of a step.
+    /// Takes the state at the beginning of a step, at which the unknowns of loops have been taken.
     pub fn begin(&mut self, y: &[f64], ydot: &[f64]) {
-        for (begin, &k) in self.begin.iter_mut().zip(&self.unknowns) {
-            *begin = [y[k], ydot[k]];
+        let mut begin = std::mem::take(&mut self.begin);
+        for (begin, &k) in begin.iter_mut().zip(&self.unknowns) {
+            *begin = self.at_end(k, y, ydot);
+        }
+        self.begin = begin;
+    }
+
+    /// Takes the unknowns of loops at the state at which the switches were evaluated last.
+    pub fn take_loops(&mut self, system: &System) {
+        self.loops[0].clear();
+        self.loops[0].extend_from_slice(system.loop_unknowns());
+    }
+
+    /// Takes their rates, `delta` after they were taken.
+    pub fn take_rates_of_loops(&mut self, system: &System, delta: f64) {
+        let [values, rates] = &mut self.loops;
+        let all = system.loop_unknowns().iter().zip(values);
+        rates.clear();
+        rates.extend(all.map(|(later, now)| (later - *now) / delta));
+    }
+
+    /// Returns value and rate of an unknown where the step ends.
+    fn at_end(&self, k: usize, y: &[f64], ydot: &[f64]) -> [f64; 2] {
+        match k.checked_sub(self.n_y) {
+            Some(k) => [0, 1].map(|of| self.loops[of][k]),
+            None => [y[k], ydot[k]],
         }
     }
 
@@ -224,7 +256,7 @@ impl BoundedSwitches {
         let inside = |x: &Interval, room: &Interval| room.lo <= x.lo && x.hi <= room.hi;
         let all = self.unknowns.iter().zip(&self.begin).zip(&self.room);
         let mut stays = all.map(|((&k, &begin), room)| {
-            let [value, rate] = hulls(begin, [y[k], ydot[k]], step.h);
+            let [value, rate] = hulls(begin, self.at_end(k, y, ydot), step.h);
             inside(&value, &room[0]) && inside(&rate, &room[1])
         });
         let time = Interval::between(step.t0, step.t1);
@@ -236,9 +268,9 @@ impl BoundedSwitches {
             return false;
         }
         self.time = Interval::between(step.t0, step.t1 + ROOM * step.h);
-        let all = self.unknowns.iter().zip(&self.begin).zip(&mut self.room);
-        for ((&k, &begin), room) in all {
-            *room = hulls(begin, [y[k], ydot[k]], step.h).map(|x| widened(x, ROOM));
+        for (i, &k) in self.unknowns.iter().enumerate() {
+            let of_step = hulls(self.begin[i], self.at_end(k, y, ydot), step.h);
+            self.room[i] = of_step.map(|x| widened(x, ROOM));
         }
         let unknowns = self.unknowns.iter().copied().zip(self.room.iter().copied());
         system.take_bounds(self.time, unknowns);
@@ -358,7 +390,7 @@ impl BoundedSwitches {
         let (y, ydot) = (method.y(), method.ydot());
         let ends = self.unknowns.iter().zip(&self.begin);
         let unknowns = ends.map(|(&k, &begin)| {
-            let of_step = hulls(begin, [y[k], ydot[k]], h);
+            let of_step = hulls(begin, self.at_end(k, y, ydot), h);
             (k, of_step.map(|x| widened(x, 0.5)))
         });
         system.take_bounds(Interval::between(t0, t1), unknowns);
@@ -408,8 +440,15 @@ impl BoundedSwitches {
             } else {
                 method.interpolate(system, t, &mut self.state)?;
             }
+            if self.unknowns.last().is_some_and(|&k| k >= self.n_y) {
+                system.switches(t, &self.state, &mut self.scratch);
+            }
+            let loops = system.loop_unknowns();
             for (sample, &k) in samples.iter_mut().zip(&self.unknowns) {
-                *sample = self.state[k];
+                *sample = match k.checked_sub(self.n_y) {
+                    Some(k) => loops[k],
+                    None => self.state[k],
+                };
             }
         }
         let n = self.unknowns.len();

@@ -332,7 +332,6 @@ impl Switches {
             return false;
         }
         let delta = 1e-9 * self.duration;
-        self.bounded.begin(y, ydot);
         self.slopes(system, t, y, ydot, delta);
         self.slope0.copy_from_slice(&self.slope1);
         system.switches(t, y, &mut self.g0);
@@ -352,7 +351,9 @@ impl Switches {
         }
         if changed {
             system.switches(t, y, &mut self.g0);
+            self.bounded.take_loops(system);
         }
+        self.bounded.begin(y, ydot);
         self.locator.begin_on(&self.g0, &self.sides);
         changed
     }
@@ -363,7 +364,9 @@ impl Switches {
             *p = y + delta * f;
         }
         system.switches(t, y, &mut self.g1);
+        self.bounded.take_loops(system);
         system.switches(t + delta, &self.probe, &mut self.slope1);
+        self.bounded.take_rates_of_loops(system, delta);
         for (slope, g) in self.slope1.iter_mut().zip(&self.g1) {
             *slope = (*slope - g) / delta;
         }
