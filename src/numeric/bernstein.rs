@@ -34,10 +34,10 @@ static SHARES: LazyLock<[[f64; NODES]; NODES]> = LazyLock::new(|| {
 pub struct Courses {
     t0: f64,
     h: f64,
-    /// control points over the whole step   (n)
-    points: Vec<[f64; NODES]>,
-    /// those of the rates   (n)
-    rates: Vec<[f64; DEGREE]>,
+    /// values at the nodes   (n each)
+    values: [Vec<f64>; NODES],
+    /// control points over the whole step, and those of the rates, once they are wanted   (n)
+    points: Vec<Option<([f64; NODES], [f64; DEGREE])>>,
 }
 
 impl Courses {
@@ -50,35 +50,48 @@ impl Courses {
         })
     }
 
-    /// Takes the values of `n` unknowns at the nodes of a step from `t0` on: `values[i][k]` that of
-    /// the k-th at the i-th.
-    pub fn lead_through(&mut self, (t0, h): (f64, f64), values: &[Vec<f64>; NODES], n: usize) {
+    /// Takes another step, from `t0` on, of `n` unknowns whose values are taken next.
+    pub fn begin(&mut self, (t0, h): (f64, f64), n: usize) {
         (self.t0, self.h) = (t0, h);
+        for values in &mut self.values {
+            values.resize(n, 0.0);
+        }
         self.points.clear();
-        let shares = &*SHARES;
-        self.points.extend((0..n).map(|k| {
-            // what stays as it is has no rate, not even by rounding
-            let begin = values[0][k];
-            let mut points = [begin; NODES];
-            for (value, shares) in values.iter().zip(shares) {
-                let way = value[k] - begin;
-                for (point, share) in points.iter_mut().zip(shares) {
-                    *point += way * share;
-                }
-            }
-            points
-        }));
-        let of_rate =
-            |p: &[f64; NODES]| std::array::from_fn(|i| DEGREE as f64 * (p[i + 1] - p[i]) / h);
-        self.rates.clear();
-        self.rates.extend(self.points.iter().map(of_rate));
+        self.points.resize(n, None);
+    }
+
+    /// Returns the values at the `i`-th node, to be taken   (n)
+    pub fn values_at(&mut self, i: usize) -> &mut [f64] {
+        &mut self.values[i]
     }
 
     /// Returns bounds of the `k`-th unknown, and of its rate, between two times of the step.
-    pub fn bound(&self, k: usize, from: f64, to: f64) -> [Interval; 2] {
-        let [a, b] = [from, to].map(|t| ((t - self.t0) / self.h).clamp(0.0, 1.0));
-        [over(self.points[k], a, b), over(self.rates[k], a, b)]
+    pub fn bound(&mut self, k: usize, from: f64, to: f64) -> [Interval; 2] {
+        let (values, h) = (&self.values, self.h);
+        let (points, rates) =
+            self.points[k].get_or_insert_with(|| lead_through(values.each_ref().map(|v| v[k]), h));
+        let [a, b] = [from, to].map(|t| ((t - self.t0) / h).clamp(0.0, 1.0));
+        [over(*points, a, b), over(*rates, a, b)]
     }
+}
+
+/// Returns the control points, over a step of length `h`, of the polynomial through values at its
+/// nodes, and those of its rate.
+fn lead_through(values: [f64; NODES], h: f64) -> ([f64; NODES], [f64; DEGREE]) {
+    // what stays as it is has no rate, not even by rounding
+    let begin = values[0];
+    let mut points = [begin; NODES];
+    for (value, shares) in values.into_iter().zip(&*SHARES) {
+        let way = value - begin;
+        for (point, share) in points.iter_mut().zip(shares) {
+            *point += way * share;
+        }
+    }
+    let mut rates = [0.0; DEGREE];
+    for (rate, ends) in rates.iter_mut().zip(points.windows(2)) {
+        *rate = DEGREE as f64 * (ends[1] - ends[0]) / h;
+    }
+    (points, rates)
 }
 
 /// Returns bounds of a polynomial between two parts of its interval.
@@ -94,11 +107,16 @@ fn over<const N: usize>(mut points: [f64; N], a: f64, b: f64) -> Interval {
 }
 
 /// Returns the bounds that control points are.
-pub fn hull(points: &[f64]) -> Interval {
-    let least = points.iter().fold(f64::INFINITY, |m, &c| m.min(c));
-    let most = points.iter().fold(f64::NEG_INFINITY, |m, &c| m.max(c));
-    match points.iter().all(|c| c.is_finite()) {
-        true => Interval::between(least, most),
+pub fn hull<const N: usize>(points: &[f64; N]) -> Interval {
+    let (mut lo, mut hi, mut sum) = (points[0], points[0], 0.0);
+    for &c in points {
+        lo = if c < lo { c } else { lo };
+        hi = if c > hi { c } else { hi };
+        sum += c * 0.0;
+    }
+    // a number that is not finite leaves none
+    match sum == 0.0 {
+        true => Interval { lo, hi },
         false => Interval::ANY,
     }
 }
@@ -157,9 +175,11 @@ mod tests {
     fn a_polynomial_of_degree_seven_stays_in_its_bounds_which_shrink_to_its_range() {
         let p = |x: f64| 3.0 - x + 2.0 * x * x - 40.0 * (x - 0.3).powi(3) * (x - 0.9).powi(4);
         let (t0, h) = (5.0, 0.25);
-        let values = Courses::nodes().map(|x| vec![0.0, p(x)]);
         let mut courses = Courses::default();
-        courses.lead_through((t0, h), &values, 2);
+        courses.begin((t0, h), 2);
+        for (i, x) in Courses::nodes().into_iter().enumerate() {
+            courses.values_at(i).copy_from_slice(&[0.0, p(x)]);
+        }
         for (from, to) in [
             (0.0, 1.0),
             (0.1, 0.2),

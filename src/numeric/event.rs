@@ -135,8 +135,32 @@ impl Locator {
     /// Those of `g`.
     pub fn scan<E>(
         &mut self,
+        ends: (f64, f64),
+        named: &[f64],
+        g: impl FnMut(f64, &mut [f64]) -> Result<(), E>,
+    ) -> Result<Option<f64>, E> {
+        self.first(ends, named, SAMPLES, g)
+    }
+
+    /// Looks for it as [`scan`](Self::scan) does, where it is known that no function comes to zero
+    /// and goes back between two of the named times.
+    ///
+    /// # Errors
+    /// Those of `g`.
+    pub fn scan_named<E>(
+        &mut self,
+        ends: (f64, f64),
+        named: &[f64],
+        g: impl FnMut(f64, &mut [f64]) -> Result<(), E>,
+    ) -> Result<Option<f64>, E> {
+        self.first(ends, named, 0, g)
+    }
+
+    fn first<E>(
+        &mut self,
         (t0, t1): (f64, f64),
         named: &[f64],
+        samples: usize,
         mut g: impl FnMut(f64, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<f64>, E> {
         self.crossed.clear();
@@ -147,11 +171,11 @@ impl Locator {
         self.times.clear();
         self.times.push(t0);
         let mut found = false;
-        let regular = |i: usize| t0 + (t1 - t0) * i as f64 / (SAMPLES + 1) as f64;
+        let regular = |i: usize| t0 + (t1 - t0) * i as f64 / (samples + 1) as f64;
         let inside = named.iter().copied().filter(|&t| t > t0);
         let (mut next, mut named) = (1, inside.peekable());
         for i in 1.. {
-            let regular = if next > SAMPLES { t1 } else { regular(next) };
+            let regular = if next > samples { t1 } else { regular(next) };
             let before = named.next_if(|&t| t < regular);
             let t = before.unwrap_or(regular);
             next += usize::from(t == regular);
@@ -167,7 +191,10 @@ impl Locator {
             }
         }
         // 2: look for dips before that; they may insert samples before the last one
-        let dip = self.find_dip(&mut g)?;
+        let dip = match samples {
+            0 => None,
+            _ => self.find_dip(&mut g)?,
+        };
         let last = self.times.len() - 1;
         let Some(i) = dip.or(found.then_some(last)) else {
             self.values.swap(0, last);

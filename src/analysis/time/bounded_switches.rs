@@ -36,7 +36,7 @@
 //! is looked at.
 
 use crate::analysis::system::System;
-use crate::numeric::bernstein::{Courses, NODES, hull};
+use crate::numeric::bernstein::{Courses, hull};
 use crate::numeric::event::{MOST_NAMED, sign};
 use crate::numeric::subdivision::{self, Found, Search, Shown};
 use crate::numeric::{Failure, Method, Step};
@@ -96,8 +96,6 @@ pub(super) struct BoundedSwitches {
     /// values and rates of these at the beginning of the step   (u)
     begin: Vec<[f64; 2]>,
     courses: Courses,
-    /// values of the unknowns at the nodes of a step   (u each)
-    samples: [Vec<f64>; NODES],
     /// bounds of all switches and of their rates   (n)
     bounds: Vec<Dual<1, Interval>>,
     /// the places in `unknowns` of what each reads, once it was asked   (n)
@@ -112,8 +110,10 @@ pub(super) struct BoundedSwitches {
     time: Interval,
     room: Vec<[Interval; 2]>,
     in_room: Vec<Dual<1, Interval>>,
-    /// whether the last step was shown to be free as a whole: only then a room is worth its bounds
-    is_calm: bool,
+    /// steps in a row that were shown to be free as a whole, and how many of them it takes to be
+    /// worth the bounds of a room: twice as many after one that was left at once
+    calm: usize,
+    calm_enough: usize,
     state: Vec<f64>,
     /// values of all switches where only the unknowns of loops are wanted   (n)
     scratch: Vec<f64>,
@@ -145,7 +145,6 @@ impl BoundedSwitches {
             loops: Default::default(),
             begin: vec![[0.0; 2]; u],
             courses: Courses::default(),
-            samples: std::array::from_fn(|_| vec![0.0; u]),
             bounds: vec![Dual::constant(0.0); n],
             reads: vec![None; n],
             times: Vec::new(),
@@ -154,7 +153,8 @@ impl BoundedSwitches {
             time: NO_TIME,
             room: vec![[Interval::ANY; 2]; u],
             in_room: vec![Dual::constant(0.0); n],
-            is_calm: false,
+            calm: 0,
+            calm_enough: 1,
             state: Vec::new(),
             scratch: vec![0.0; n],
             waits: 0,
@@ -261,12 +261,14 @@ impl BoundedSwitches {
         });
         let time = Interval::between(step.t0, step.t1);
         if inside(&time, &self.time) && stays.all(|stays| stays) {
+            self.calm_enough = 1;
             return true;
         }
         self.time = NO_TIME;
-        if !self.is_calm {
+        if self.calm < self.calm_enough {
             return false;
         }
+        (self.calm, self.calm_enough) = (0, 2 * self.calm_enough);
         self.time = Interval::between(step.t0, step.t1 + ROOM * step.h);
         for (i, &k) in self.unknowns.iter().enumerate() {
             let of_step = hulls(self.begin[i], self.at_end(k, y, ydot), step.h);
@@ -418,7 +420,10 @@ impl BoundedSwitches {
             true
         });
         self.open = open;
-        self.is_calm = whole == Whole::Free;
+        self.calm = match whole {
+            Whole::Free => self.calm + 1,
+            _ => 0,
+        };
         whole
     }
 
@@ -430,8 +435,9 @@ impl BoundedSwitches {
         step: &Step,
     ) -> Result<(), Failure> {
         self.state.resize(method.y().len(), 0.0);
-        for (node, samples) in Courses::nodes().iter().zip(&mut self.samples) {
-            let t = match *node {
+        self.courses.begin((step.t0, step.h), self.unknowns.len());
+        for (i, x) in Courses::nodes().into_iter().enumerate() {
+            let t = match x {
                 x if x >= 1.0 => step.t1,
                 x => step.t0 + x * step.h,
             };
@@ -444,15 +450,14 @@ impl BoundedSwitches {
                 system.switches(t, &self.state, &mut self.scratch);
             }
             let loops = system.loop_unknowns();
-            for (sample, &k) in samples.iter_mut().zip(&self.unknowns) {
-                *sample = match k.checked_sub(self.n_y) {
+            let values = self.courses.values_at(i).iter_mut();
+            for (value, &k) in values.zip(&self.unknowns) {
+                *value = match k.checked_sub(self.n_y) {
                     Some(k) => loops[k],
                     None => self.state[k],
                 };
             }
         }
-        let n = self.unknowns.len();
-        (self.courses).lead_through((step.t0, step.h), &self.samples, n);
         Ok(())
     }
 
@@ -470,7 +475,8 @@ impl BoundedSwitches {
                 .filter_map(|y| self.unknowns.binary_search(&y).ok())
                 .collect()
         });
-        let bounded = |&j: &usize| (self.unknowns[j], self.courses.bound(j, from, to));
+        let (unknowns, courses) = (&self.unknowns, &mut self.courses);
+        let bounded = |&j: &usize| (unknowns[j], courses.bound(j, from, to));
         system.take_bounds(Interval::between(from, to), reads.iter().map(bounded));
         let bounds = system.bound_switch(k);
         self.bounds[k] = bounds;

@@ -485,7 +485,7 @@ impl Switches {
         };
         match shown {
             Shown::Free => Seen::Nothing,
-            Shown::Event => Seen::Look(Vec::new()),
+            Shown::Event => Seen::Look(vec![step.t1]),
             Shown::Until(_) | Shown::Nothing => {
                 let asked = Asked {
                     step,
@@ -589,7 +589,8 @@ impl Switches {
         (0..self.sides.len()).all(|k| self.is_far(k, step.h, landed) || stays(k))
     }
 
-    /// Finds the first switch within a step on its interpolant; `named`: times to look at.
+    /// Finds the first switch within a step on its interpolant; `named`: times to look at, between
+    /// which those that can be bounded do not come to zero and go back.
     fn scan(
         &mut self,
         system: &mut System,
@@ -597,9 +598,15 @@ impl Switches {
         step: &Step,
         named: &[f64],
     ) -> Result<Option<f64>, Failure> {
+        let asked = self.asked.iter().enumerate();
+        let all_known = !self.slide()
+            && !named.is_empty()
+            && asked
+                .into_iter()
+                .all(|(k, &side)| side == 0 || self.bounded.has(k));
         let state = &mut self.probe;
         let ends = (step.t0, step.t1);
-        self.locator.scan(ends, named, |t, values| {
+        let values = |t: f64, values: &mut [f64]| {
             if t == step.t1 {
                 state.copy_from_slice(method.y());
             } else {
@@ -607,7 +614,11 @@ impl Switches {
             }
             system.switches(t, state, values);
             Ok::<(), Failure>(())
-        })
+        };
+        match all_known {
+            true => self.locator.scan_named(ends, named, values),
+            false => self.locator.scan(ends, named, values),
+        }
     }
 
     /// Decides about a step in which switches were crossed: it stays when they were at its end.
