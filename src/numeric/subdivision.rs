@@ -144,4 +144,25 @@ mod tests {
         assert!(found.event.is_none());
         assert!(found.free_to > 0.02 && found.free_to < 0.05, "{found:?}");
     }
+
+    #[test]
+    fn what_is_free_for_a_part_is_not_looked_at_there_again() {
+        let search = Search {
+            first: 1.0,
+            shortest: 1e-9,
+        };
+        // falls to zero at 0.7, nowhere faster than by 2: free for half the value
+        let looked = std::cell::RefCell::new(Vec::new());
+        let show = |_: &mut (), a: f64, _: f64| {
+            looked.borrow_mut().push(a);
+            Shown::Until(a + 0.5 * (0.7 - a))
+        };
+        let event = |_: &mut (), a: f64, b: f64| (b > 0.7).then_some((a, b));
+        let found = first(&mut (), (0.0, 1.0), search, show, event);
+        let (a, b) = found.event.expect("it comes to zero");
+        assert!(a <= 0.7 && 0.7 < b && b - a <= 1e-9, "{a} {b}");
+        let looked = looked.into_inner();
+        assert!(looked.windows(2).all(|pair| pair[0] < pair[1]));
+        assert!(looked.len() < 40, "{}", looked.len());
+    }
 }
