@@ -166,11 +166,15 @@ fn nothing_is_said_of_the_energy_of_a_motion_that_shakes_nor_of_swings_of_a_fall
     let shaken = [60.0, 3.9, 0.9].map(|w| {
         format!(
             "PART/3, MASS=5, CM=3, IP=1,1,1\nMARKER/3, PART=3\nJOINT/2, TRANSLATIONAL, I=3, J=1\n\
-             MOTION/1, JOINT=2, TRANSLATIONAL, FUNCTION=0.2*SIN({w:?}*TIME+4)\n{falls}"
+             MOTION/1, JOINT=2, TRANSLATIONAL, FUNCTION=0.2*SIN({w:?}*TIME+4)\n"
         )
     });
+    let pushed = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\n\
+                  SFORCE/2, TRANSLATIONAL, ACTIONONLY, I=2, J=1, FUNCTION=1\n";
+    let beside = |rest: &str| shaken.clone().map(|shaken| format!("{shaken}{rest}"));
+    let all = [beside(falls), beside(pushed)].concat();
     for method in METHODS {
-        for text in shaken.iter().map(String::as_str).chain([falls]) {
+        for text in all.iter().map(String::as_str).chain([falls]) {
             for end in [0.93, 2.0] {
                 let said = said(text, method, end);
                 assert_eq!(said, Vec::<String>::new(), "{method} to {end}\n{text}");

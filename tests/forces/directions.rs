@@ -21,6 +21,32 @@ fn a_positive_force_repels_along_the_line_and_a_negative_one_attracts() {
     }
 }
 
+/// Whether a force along the line between two bodies, `apart` from each other, is said to feed energy; a third body makes
+/// the mechanism long beside that.
+fn is_said_to_feed(function: &str, apart: f64) -> bool {
+    let text = format!(
+        "PART/2, MASS=1, CM=20, IP=1,1,2, QG={apart:?},0,0\nMARKER/20, PART=2\n\
+         PART/3, MASS=3, CM=30, IP=1,1,1\nMARKER/30, PART=3\n\
+         PART/4, MASS=1, CM=40, IP=1,1,1, QG=3,0,0\nMARKER/40, PART=4\n\
+         SFORCE/1, TRANSLATION, I=20, J=30, FUNCTION={function}\n"
+    );
+    let mut s = session(&text, &["VX(20,1)"], 1e-6);
+    go(&mut s, Analysis::Dynamic, 1e-3, 1);
+    let warnings = &s.run.record.warnings;
+    warnings.iter().any(|w| w.code == "negative_damping")
+}
+
+#[test]
+fn a_contact_along_a_line_is_no_damper_that_feeds_energy_however_near_its_bodies_are() {
+    for apart in [0.21, 0.4, 1.0, 3.0] {
+        let contact =
+            |damping: f64| format!("IMPACT(DM(20,30),VR(20,30),0.2,1E5,1.5,{damping:?},1E-3)");
+        assert!(!is_said_to_feed(&contact(20.0), apart), "{apart}");
+        let feeds = format!("{}+2*VR(20,30)", contact(0.0));
+        assert!(is_said_to_feed(&feeds, apart), "{apart}");
+    }
+}
+
 #[test]
 fn a_force_on_a_body_alone_follows_the_z_axis_of_its_turning_marker() {
     // z of MARKER/31 is along x of its part, which turns about z of ground

@@ -88,12 +88,13 @@ pub(super) enum Whole {
 pub(super) struct BoundedSwitches {
     /// which   (m)
     which: Vec<usize>,
-    /// unknowns that they read, those of loops after those of the method   (u)
+    /// unknowns that they read, those of loops after those of the method   (u), and how many the
+    /// method has
     unknowns: Vec<usize>,
     n_y: usize,
-    /// values and rates of the unknowns of loops at the end of the step
+    /// values and rates of the unknowns of all loops at the end of the step   (loops each)
     loops: [Vec<f64>; 2],
-    /// values and rates of these at the beginning of the step   (u)
+    /// values and rates of the unknowns at the beginning of the step   (u)
     begin: Vec<[f64; 2]>,
     courses: Courses,
     /// bounds of all switches and of their rates   (n)

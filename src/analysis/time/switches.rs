@@ -598,12 +598,13 @@ impl Switches {
         step: &Step,
         named: &[f64],
     ) -> Result<Option<f64>, Failure> {
-        let asked = self.asked.iter().enumerate();
-        let all_known = !self.slide()
-            && !named.is_empty()
-            && asked
-                .into_iter()
-                .all(|(k, &side)| side == 0 || self.bounded.has(k));
+        // what is on no side may leave it anywhere
+        let is_known = |(k, &asked): (usize, &i8)| match asked {
+            0 => self.next[k] != 0,
+            _ => self.bounded.has(k),
+        };
+        let all_known =
+            !self.slide() && !named.is_empty() && self.asked.iter().enumerate().all(is_known);
         let state = &mut self.probe;
         let ends = (step.t0, step.t1);
         let values = |t: f64, values: &mut [f64]| {

@@ -39,6 +39,9 @@ struct Component<'m> {
     function: &'m Formula,
     /// direction in ground of the force or torque on I
     along: Vec3<f64>,
+    /// displacement against it that takes I to J, where the force acts along the line between both:
+    /// behind J it points the other way
+    reach: f64,
     turns: bool,
     i: u32,
 }
@@ -90,10 +93,10 @@ fn components<'m>(scene: &Scene, model: &'m Model) -> Vec<Component<'m>> {
             continue;
         };
         let line = i.position - j.position;
-        let along = if s.rotational || s.action_only {
-            j.rotation.column(2)
+        let (along, reach) = if s.rotational || s.action_only {
+            (j.rotation.column(2), f64::INFINITY)
         } else if line.norm() > 0.0 {
-            line.times(1.0 / line.norm())
+            (line.times(1.0 / line.norm()), line.norm())
         } else {
             continue;
         };
@@ -102,6 +105,7 @@ fn components<'m>(scene: &Scene, model: &'m Model) -> Vec<Component<'m>> {
             argument: "FUNCTION",
             function: &s.function,
             along,
+            reach,
             turns: s.rotational,
             i: s.i,
         });
@@ -123,6 +127,7 @@ fn components<'m>(scene: &Scene, model: &'m Model) -> Vec<Component<'m>> {
                     argument: COMPONENTS[k],
                     function: function.as_ref()?,
                     along: axes.column(k % 3),
+                    reach: f64::INFINITY,
                     turns: k >= 3,
                     i: f.i,
                 })
@@ -157,7 +162,8 @@ impl Slopes {
         let mut place = Constant::default();
         for time in TIMES {
             let mut before: Option<(f64, f64)> = None;
-            for displacement in DISPLACEMENTS {
+            let on_its_side = |d: &f64| d * one > -c.reach;
+            for displacement in DISPLACEMENTS.into_iter().filter(on_its_side) {
                 let at = |rate: f64| {
                     let moved = Moved {
                         scene,
