@@ -453,7 +453,7 @@ static void a_simulation_can_be_ended(void) {
     CognateError *error = NULL;
     CognateModel *model = model_of(FALLING);
     CognateOptions *options = cognate_options_new();
-    CHECK(cognate_options_method(options, "BDF", &error) && cognate_options_name(options, "b", &error));
+    CHECK(cognate_options_method(options, "RADAU5", &error) && cognate_options_name(options, "b", &error));
     CHECK(cognate_options_skip(options, "contact", &error));
     CHECK(!cognate_options_skip(options, "nothing", &error));
     cognate_error_free(error);

@@ -22,7 +22,7 @@ use std::time::Instant;
 Examples:
   cognate report crank.acf
   cognate report crank.acf --want 1e-4 --budget 2min
-  cognate report crank.adm --end 2 --method RADAU5 --method BDF --out results")]
+  cognate report crank.adm --end 2 --method RADAU5 --method DOP853 --out results")]
 pub struct Args {
     /// Command file (.acf), log of an earlier run (.msg), or dataset (.adm); - reads a dataset from
     /// standard input

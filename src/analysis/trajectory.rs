@@ -44,8 +44,6 @@ pub enum Takeover {
     Stiff,
     /// branches changed where it was stiff
     Eased,
-    /// the motion stays where a function changes its branch
-    Slides,
 }
 
 /// A position at which rows become dependent while the mechanism passes.

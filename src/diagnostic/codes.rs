@@ -704,11 +704,10 @@ jumps it runs, with a warning, and forces jump.",
     },
     Code {
         name: "method",
-        summary: "the method of integration is not known, or cannot take this model",
+        summary: "the method of integration is not known",
         explanation: "\
-`--method` and INTEGRATOR/… name a method: AUTO (the program chooses), DOP853, RADAU5, BDF, HHT, NEWMARK. The names
-of Adams are understood too: GSTIFF, WSTIFF, HASTIFF and CONSTANT_BDF are done by RADAU5, ABAM and RKF45 by DOP853.
-Where BDF, HHT or NEWMARK cannot take the functions of a model, RADAU5 takes their place and the run says so.
+`--method` and INTEGRATOR/… name a method: AUTO (the program chooses), DOP853, RADAU5. The names of Adams are understood
+too: GSTIFF, WSTIFF, HASTIFF, CONSTANT_BDF, HHT and NEWMARK are done by RADAU5, ABAM and RKF45 by DOP853.
 
     cognate run model.acf --method DOPRI     write --method DOP853",
     },

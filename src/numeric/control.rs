@@ -35,8 +35,6 @@ pub struct Weights {
     tolerance: f64,
     /// whether a smaller one was asked for
     raised: bool,
-    /// relative error that is permitted in a step
-    of_step: f64,
     /// φ
     floor: f64,
     /// typical magnitudes that the problem gave   (n)
@@ -150,7 +148,6 @@ impl Weights {
         Weights {
             tolerance,
             raised: options.tolerance < SMALLEST_TOLERANCE,
-            of_step: tolerance,
             floor: options.floor,
             typical: vec![1.0; n],
             magnitude: vec![options.floor; n],
@@ -163,11 +160,6 @@ impl Weights {
             courses: vec![Course::default(); n],
             seen: f64::INFINITY,
         }
-    }
-
-    /// The same for a method that permits a relative error in a step that is not the requested one.
-    pub fn for_steps(self, of_step: f64) -> Self {
-        Self { of_step, ..self }
     }
 
     /// Asks the problem, through `fill`, how magnitudes of unknowns depend on each other.
@@ -208,7 +200,7 @@ impl Weights {
         let dt = (t - self.seen).max(0.0);
         self.seen = t;
         self.coarse = false;
-        let least = ROUNDINGS * f64::EPSILON / self.of_step;
+        let least = ROUNDINGS * f64::EPSILON / self.tolerance;
         let all = self.magnitude.iter_mut().zip(y).zip(&mut self.courses);
         let places = self.typical.iter().zip(&self.origin);
         for (((m, y), course), (typical, origin)) in all.zip(places) {
@@ -284,121 +276,6 @@ impl Weights {
             .zip(y)
             .zip(magnitudes)
             .map(|((e, y), ((m, most), origin))| e / (y - origin).abs().min(*most).max(*m))
-    }
-}
-
-/// Error above which nothing that grows no smaller is taken for rounding, relative to magnitudes.
-const MOST_ROUNDING: f64 = 1e-8;
-/// Permitted error where rounding is felt, over that rounding: then it disturbs neither Newton's
-/// iteration nor the error test.
-const ABOVE_ROUNDING: f64 = 20.0;
-/// Factor of a permitted error that was raised with each further step.
-const FALLING_BACK: f64 = 0.8;
-
-/// Factor of the length up to which a raised permitted error is held with each further step.
-const LETTING_GO: f64 = 0.97;
-
-/// The permitted error of a step, raised while rounding lets no smaller one be met.
-#[derive(Clone, Copy, Debug)]
-pub struct Permitted {
-    /// the one that the request asks for, as far as double precision goes
-    wanted: f64,
-    /// the one that holds now
-    now: f64,
-    /// whether the request asks for a smaller one
-    in_vain: bool,
-    /// length of a step up to which a raised one is held, in s
-    held_to: f64,
-}
-
-impl Permitted {
-    /// Creates a permitted error for the one that a request asks for; `least`: the smallest that
-    /// the method can meet.
-    pub fn new(asked: f64, least: f64) -> Self {
-        let wanted = asked.max(least);
-        Permitted {
-            wanted,
-            now: wanted,
-            in_vain: asked < least,
-            held_to: 0.0,
-        }
-    }
-
-    /// Returns the permitted error that holds now.
-    pub fn now(&self) -> f64 {
-        self.now
-    }
-
-    /// Returns whether it is raised above rounding.
-    pub fn is_raised(&self) -> bool {
-        self.now > self.wanted
-    }
-
-    /// Returns whether an error, as a part of the permitted one, may be rounding.
-    pub fn may_be_rounding(&self, size: f64) -> bool {
-        size * self.now <= MOST_ROUNDING
-    }
-
-    /// Raises the permitted error above one that grows no smaller, as a part of the permitted one.
-    /// It is held until a step of length `h` has succeeded: at the short steps that rounding has
-    /// made nothing smaller could be kept.
-    pub fn raise(&mut self, size: f64, h: f64) {
-        self.now *= (ABOVE_ROUNDING * size).max(2.0);
-        self.held_to = h;
-    }
-
-    /// Takes note of an accepted step of length `h`; returns whether its request was below
-    /// rounding.
-    pub fn accepted(&mut self, h: f64) -> bool {
-        let in_vain = self.in_vain || self.is_raised();
-        if h >= self.held_to {
-            self.held_to = 0.0;
-            self.now = (FALLING_BACK * self.now).max(self.wanted);
-        }
-        self.held_to *= LETTING_GO;
-        in_vain
-    }
-}
-
-/// Shortening of a step, over its first length, after which an error of truncation is far smaller.
-const MUCH_SHORTER: f64 = 1.0 / 16.0;
-/// Size of an error that has not become smaller, over the first.
-const AS_LARGE: f64 = 0.5;
-
-/// Errors of attempts over the same stretch: those of truncation fall as steps are shortened.
-///
-/// Rounding lets a short step succeed by chance, so that steps become shorter and shorter without
-/// any of them being shortened much. Attempts are therefore compared with the first one that ended
-/// no sooner.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Stagnation {
-    first: Option<TooLarge>,
-}
-
-/// An attempt whose error was too large.
-#[derive(Clone, Copy, Debug)]
-struct TooLarge {
-    /// where it ended, in s
-    end: f64,
-    /// length, in s
-    h: f64,
-    /// error, as a part of the permitted one
-    error: f64,
-}
-
-impl Stagnation {
-    /// Takes note of an attempt of length `h` to `end` whose error, as a part of the permitted one,
-    /// was too large; returns whether a much shorter step has not made it smaller.
-    pub fn see(&mut self, end: f64, h: f64, error: f64) -> bool {
-        let known = self.first.filter(|first| end <= first.end);
-        let first = known.unwrap_or(TooLarge { end, h, error });
-        self.first = Some(first);
-        h <= MUCH_SHORTER * first.h && error >= AS_LARGE * first.error
-    }
-
-    /// Forgets the attempts; returns the length of the first, or `h` where there was none longer.
-    pub fn take_length(&mut self, h: f64) -> f64 {
-        self.first.take().map_or(h, |first| first.h.max(h))
     }
 }
 

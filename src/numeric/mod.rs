@@ -1,4 +1,4 @@
-//! Methods for differential and differential-algebraic equations, and the linear algebra they need.
+//! Methods for differential equations, and the linear algebra they need.
 //!
 //! This floor knows numbers, residuals and rates, and nothing of bodies. A method offers steps and
 //! an interpolant; output times, events and files belong to the analysis that drives it.
@@ -15,17 +15,13 @@
 //! The requested tolerance is the permitted local error of each unknown relative to the largest
 //! magnitude it has had so far (see [`control::Weights`]).
 
-pub mod bdf;
 pub mod bernstein;
 pub mod connected;
 pub mod control;
-pub mod corrector;
 pub mod dense;
 pub mod eigenvalues;
 pub mod envelope;
 pub mod event;
-pub mod hht;
-pub mod newton;
 pub mod noise;
 pub mod pattern;
 pub mod quadrature;
@@ -35,12 +31,10 @@ pub mod runge_kutta;
 pub mod sparse;
 pub mod subdivision;
 
-pub use bdf::Bdf;
-pub use hht::Hht;
 pub use radau::Radau;
 pub use runge_kutta::Dop853;
 
-use quadrature::{GAUSS_3, Node, over_interpolant};
+use quadrature::Node;
 
 /// The failure of an evaluation: a small code that the problem chooses and the analysis translates
 /// into words.
@@ -130,52 +124,6 @@ pub trait Ode {
     fn relations(&self, _relations: &mut [Relation]) {}
 }
 
-/// An implicit system `F(t, y, ẏ) = 0`.
-pub trait Dae {
-    /// Returns the number of unknowns and of rows.
-    fn size(&self) -> usize;
-    /// Evaluates `r = F(t, y, ydot)`.
-    ///
-    /// # Errors
-    /// When `F` has no finite value there.
-    fn residual(&mut self, t: f64, y: &[f64], ydot: &[f64], r: &mut [f64]) -> Result<(), Failure>;
-    /// Returns rows and columns of the entries of the Jacobian, fixed for the life of the problem.
-    fn pattern(&self) -> Vec<(usize, usize)>;
-    /// Evaluates `values[e] = (∂F/∂y + cj ∂F/∂ẏ)` at the `e`-th entry of the pattern.
-    ///
-    /// # Errors
-    /// When it has no finite value there.
-    fn jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        ydot: &[f64],
-        cj: f64,
-        values: &mut [f64],
-    ) -> Result<(), Failure>;
-    /// Makes a start consistent: given the differential unknowns in `y`, sets its algebraic
-    /// unknowns and all rates `ydot` so that `F(t, y, ydot) = 0` (and, for higher index, its hidden
-    /// constraints hold).
-    ///
-    /// # Errors
-    /// When there is none near `y`.
-    fn consistent(&mut self, t: f64, y: &mut [f64], ydot: &mut [f64]) -> Result<(), Failure>;
-    /// Returns how the error norm treats each unknown   (n)
-    fn kinds(&self) -> Vec<Kind>;
-    /// Returns the powers of the step with which rows and unknowns grow; see [`Levels`].
-    fn levels(&self) -> Levels {
-        Levels {
-            rows: vec![0; self.size()],
-            unknowns: vec![0; self.size()],
-        }
-    }
-    /// Sets the typical magnitude of each unknown; errors are measured against a small part of it
-    /// ([`Options::floor`]) or more   (n)
-    fn typical(&self, typical: &mut [f64]);
-    /// Sets how the magnitude of each unknown depends on others   (n)
-    fn relations(&self, _relations: &mut [Relation]) {}
-}
-
 /// The dependence of the magnitude of an unknown, against which its errors are measured, on other
 /// unknowns.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -208,37 +156,6 @@ impl Default for Relation {
     }
 }
 
-/// The treatment of an unknown of a [`Dae`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// its rate occurs; its error is controlled
-    Differential,
-    /// its rate occurs; its error is not controlled (velocities in an index-3 formulation)
-    DifferentialUncontrolled,
-    /// its rate does not occur: multipliers, algebraic variables; its error is not controlled
-    Algebraic,
-    /// its rate does not occur, but its error is controlled
-    AlgebraicControlled,
-}
-
-/// Powers of the step that balance the Newton matrix of a [`Dae`] of higher index.
-///
-/// Row `i` is multiplied by `h^rows[i]`, and unknown `j` is solved for as `h^unknowns[j] · yⱼ`, so
-/// that the matrix stays well conditioned as `h → 0`. For positions, velocities and multipliers
-/// (index 3) and the rows that belong to them:
-///
-/// ```text
-/// unknowns  q 0   v 1   λ 2   (μ of a stabilized index-2 form 1)
-/// rows      q̇ − v (+ Gᵀμ) = 0: 1     M v̇ − f + Gᵀλ = 0: 2     g(q) = 0: 0     (G v = 0: 1)
-/// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Levels {
-    /// power of each row   (n)
-    pub rows: Vec<u8>,
-    /// power of each unknown   (n)
-    pub unknowns: Vec<u8>,
-}
-
 /// The request to a method: accuracy and limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
@@ -252,8 +169,6 @@ pub struct Options {
     pub h_max: f64,
     /// a step shorter than this ends the integration, in s
     pub h_min: f64,
-    /// highest order of methods of variable order
-    pub max_order: usize,
     /// Newton iterations permitted per step
     pub max_newton: usize,
     /// attempted steps permitted in all, rejected ones included
@@ -268,7 +183,6 @@ impl Default for Options {
             h_initial: None,
             h_max: f64::INFINITY,
             h_min: 0.0,
-            max_order: 5,
             max_newton: 10,
             max_steps: usize::MAX,
         }
@@ -437,9 +351,7 @@ pub trait Method<P: ?Sized> {
         ends: [f64; 2],
         work: &mut [Vec<f64>; 2],
         visit: &mut dyn FnMut(&mut P, Node<'_>),
-    ) -> Result<(), Failure> {
-        over_interpolant(self, problem, ends, &GAUSS_3, work, visit)
-    }
+    ) -> Result<(), Failure>;
     /// Leaves, at the end of an integration, what a method of its kind may go on with; nothing is
     /// left of it. `None`: one of several steps begins anew.
     fn leave(&mut self) -> Option<Memory> {
@@ -471,79 +383,48 @@ pub struct MethodRow {
     pub name: &'static str,
     /// description in a few words
     pub summary: &'static str,
-    /// form of the equations it treats
-    pub form: Form,
     /// whether it solves no equations, so that it cannot treat stiff problems
     pub explicit: bool,
-    /// order of the method, the highest if it varies
+    /// order of the method
     pub order: usize,
     /// factor from the difference between a run and one at a smaller request to a bar of error
     /// that holds for 99 % of outputs, with something to spare; measured by
     /// `benches/accuracy`
     pub safety: f64,
-    /// ρ: a request over that of the run whose difference tells the error. An error of BDF, whose
-    /// order varies, is up to three times as large or as small as its request lets expect: at a
-    /// quarter of it both runs may have the same error
+    /// ρ: a request over that of the run whose difference tells the error
     pub tightening: f64,
 }
 
-/// The form of the equations that a method treats.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// `ẏ = f(t, y)`, see [`Ode`]
-    Ode,
-    /// `F(t, y, ẏ) = 0`, see [`Dae`]
-    Dae,
-}
+/// The table of all methods.
+pub const METHODS: &[MethodRow] = &[
+    MethodRow {
+        name: "DOP853",
+        summary: "explicit Runge–Kutta of Dormand and Prince, 8(5,3), projected onto invariants",
+        explicit: true,
+        order: 8,
+        safety: 8.0,
+        tightening: 4.0,
+    },
+    MethodRow {
+        name: "RADAU5",
+        summary: "Radau IIA of three stages for stiff problems, projected onto invariants",
+        explicit: false,
+        order: 5,
+        safety: 10.0,
+        tightening: 4.0,
+    },
+];
 
-/// Returns whether the method of that name treats `F(t, y, ẏ) = 0`.
-pub fn is_implicit(name: &str) -> bool {
-    METHODS
-        .iter()
-        .any(|m| m.name == name && m.form == Form::Dae)
-}
-
-/// Writes the table of methods, and the constructors that read it.
-macro_rules! methods {
-    (
-        ode { $($ode_name:literal, $ode_explicit:literal, $ode_order:literal, $ode_safety:literal, $ode_tightening:literal, $ode_summary:literal => $ode:expr;)* }
-        dae { $($dae_name:literal, $dae_explicit:literal, $dae_order:literal, $dae_safety:literal, $dae_tightening:literal, $dae_summary:literal => $dae:expr;)* }
-    ) => {
-        /// The table of all methods. The first of each form is the default of its kind.
-        pub const METHODS: &[MethodRow] = &[
-            $(MethodRow { name: $ode_name, summary: $ode_summary, form: Form::Ode, explicit: $ode_explicit, order: $ode_order, safety: $ode_safety, tightening: $ode_tightening },)*
-            $(MethodRow { name: $dae_name, summary: $dae_summary, form: Form::Dae, explicit: $dae_explicit, order: $dae_order, safety: $dae_safety, tightening: $dae_tightening },)*
-        ];
-
-        /// Creates the method of that name for problems `ẏ = f(t, y)` of `n` unknowns, if it is in
-        /// the table.
-        pub fn ode_method<P: Ode + ?Sized>(name: &str, n: usize, options: &Options) -> Option<Box<dyn Method<P>>> {
-            match name {
-                $($ode_name => Some(Box::new($ode(n, options))),)*
-                _ => None,
-            }
-        }
-
-        /// Creates the method of that name for problems `F(t, y, ẏ) = 0` of `n` unknowns, if it is
-        /// in the table.
-        pub fn dae_method<P: Dae + ?Sized>(name: &str, n: usize, options: &Options) -> Option<Box<dyn Method<P>>> {
-            match name {
-                $($dae_name => Some(Box::new($dae(n, options))),)*
-                _ => None,
-            }
-        }
-    };
-}
-
-methods! {
-    ode {
-        "DOP853", true, 8, 8.0, 4.0, "explicit Runge–Kutta of Dormand and Prince, 8(5,3), projected onto invariants" => Dop853::new;
-        "RADAU5", false, 5, 10.0, 4.0, "Radau IIA of three stages for stiff problems, projected onto invariants" => Radau::new;
-    }
-    dae {
-        "BDF", false, 5, 10.0, 8.0, "backward differentiation of order 1 to 5, variable step, fixed leading coefficient" => Bdf::new;
-        "HHT", false, 2, 5.0, 3.0, "generalized-α with damping of high frequencies (α = −0.3)" => Hht::new;
-        "NEWMARK", false, 2, 5.0, 3.0, "generalized-α without damping (average acceleration)" => Hht::newmark;
+/// Creates the method of that name for problems of `n` unknowns, if it is in the table.
+pub fn ode_method<P: Ode + ?Sized>(
+    name: &str,
+    n: usize,
+    options: &Options,
+) -> Option<Box<dyn Method<P>>> {
+    match name {
+        "DOP853" => Some(Box::new(Dop853::new(n, options))),
+        "RADAU5" => Some(Box::new(Radau::new(n, options))),
+        _ => None,
     }
 }
 

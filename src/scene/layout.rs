@@ -76,26 +76,6 @@ pub struct LongRow {
     pub n_sides: usize,
 }
 
-/// Unknowns and row of the implicit equations.
-///
-/// ```text
-/// unknowns    y | λ | µ
-/// row         numbers | ẏ | λ | µ | sides
-/// ```
-///
-/// The numbers have y among them, so that of the unknowns only the multipliers are added.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ImplicitLayout {
-    /// sizes of the blocks of the numbers
-    pub numbers: Layout,
-    /// rows that take part: each has a multiplier
-    pub n_rows: usize,
-    /// whether rows hold in velocity too, with a second multiplier each
-    pub has_mu: bool,
-    /// sides of switches on which branches are held
-    pub n_sides: usize,
-}
-
 /// Returns the `N` numbers from a place on, such as the four of a quaternion.
 pub fn several<S: Copy, const N: usize>(row: &[S], first: usize) -> [S; N] {
     std::array::from_fn(|k| row[first + k])
@@ -168,11 +148,6 @@ impl Layout {
     /// Returns the place of the `k`-th velocity.
     pub fn v_at(&self, k: usize) -> usize {
         self.v().start + k
-    }
-    /// Returns the index of the `k`-th velocity among the integrator's unknowns, and of its rate
-    /// among theirs.
-    pub fn v_in_y(&self, k: usize) -> usize {
-        self.n_q + k
     }
     /// Returns the place of the `k`-th further state.
     pub fn x_at(&self, k: usize) -> usize {
@@ -291,72 +266,6 @@ impl LongRow {
     }
 }
 
-impl ImplicitLayout {
-    /// Returns the number of unknowns.
-    pub fn size(&self) -> usize {
-        self.numbers.n_y() + self.n_multipliers()
-    }
-    /// Returns how many multipliers there are, λ and µ.
-    pub fn n_multipliers(&self) -> usize {
-        if self.has_mu {
-            2 * self.n_rows
-        } else {
-            self.n_rows
-        }
-    }
-    /// Returns the row that the residual reads.
-    pub fn row(&self) -> LongRow {
-        LongRow {
-            numbers: self.numbers,
-            n_more: self.size(),
-            n_sides: self.n_sides,
-        }
-    }
-    /// Splits what stands after the numbers of a state into ẏ, λ, µ.
-    pub fn split<'m, S>(&self, more: &'m [S]) -> [&'m [S]; 3] {
-        let (ydot, multipliers) = more.split_at(self.numbers.n_y());
-        let (lambda, mu) = multipliers.split_at(self.n_rows);
-        [ydot, lambda, mu]
-    }
-    /// Returns the places of y among the unknowns.
-    pub fn y(&self) -> Range<usize> {
-        0..self.numbers.n_y()
-    }
-    /// Returns the places of λ among the unknowns.
-    pub fn lambda(&self) -> Range<usize> {
-        self.y().end..self.y().end + self.n_rows
-    }
-    /// Returns the places of λ and µ among the unknowns.
-    pub fn multipliers(&self) -> Range<usize> {
-        self.y().end..self.size()
-    }
-    /// Returns where the row has the `j`-th unknown.
-    pub fn unknown_at(&self, j: usize) -> usize {
-        if self.y().contains(&j) {
-            self.numbers.y_at(j)
-        } else {
-            self.row().more().start + j
-        }
-    }
-    /// Returns where the row has the rate of the `j`-th unknown; `None` for multipliers.
-    pub fn rate_at(&self, j: usize) -> Option<usize> {
-        self.y().contains(&j).then(|| self.row().more().start + j)
-    }
-    /// Puts the numbers of a state, rates, multipliers and sides into the row.
-    pub fn put(
-        &self,
-        row: &mut [f64],
-        numbers: &[f64],
-        (y, ydot): (&[f64], &[f64]),
-        sides: &[f64],
-    ) {
-        self.row().put(row, numbers, sides);
-        let more = &mut row[self.row().more()];
-        more[self.y()].copy_from_slice(&ydot[self.y()]);
-        more[self.multipliers()].copy_from_slice(&y[self.multipliers()]);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -388,40 +297,5 @@ mod tests {
         let y = layout.y();
         layout.state_mut(&mut row[y]).v[1] = 99;
         assert_eq!(row[layout.v_at(1)], 99);
-    }
-
-    #[test]
-    fn every_unknown_of_the_implicit_equations_has_its_place_in_the_row() {
-        let implicit = ImplicitLayout {
-            numbers: Layout {
-                n_q: 2,
-                n_v: 1,
-                n_external: 3,
-                ..Layout::default()
-            },
-            n_rows: 2,
-            has_mu: true,
-            n_sides: 1,
-        };
-        let mut row = vec![0.0; implicit.row().len()];
-        let numbers: Vec<f64> = (0..implicit.numbers.len()).map(|k| k as f64).collect();
-        let y: Vec<f64> = (0..implicit.size()).map(|j| 10.0 + j as f64).collect();
-        let ydot: Vec<f64> = (0..implicit.size()).map(|j| 20.0 + j as f64).collect();
-        implicit.put(&mut row, &numbers, (&y, &ydot), &[-1.0]);
-        let (first, more) = implicit.row().split(&row);
-        assert_eq!(first, numbers);
-        assert_eq!(
-            implicit.split(more),
-            [&ydot[..3], &y[3..5], &y[5..]],
-            "{row:?}"
-        );
-        for j in 0..implicit.size() {
-            let of_state = j < 3;
-            let expected = if of_state { 1.0 + j as f64 } else { y[j] };
-            assert_eq!(row[implicit.unknown_at(j)], expected);
-            let rate = implicit.rate_at(j).map(|place| row[place]);
-            assert_eq!(rate, of_state.then(|| ydot[j]));
-        }
-        assert_eq!(row[implicit.row().side_at(0)], -1.0);
     }
 }

@@ -5,7 +5,7 @@ use crate::problems;
 use crate::counting;
 
 use cognate::numeric::event::Locator;
-use cognate::numeric::{Form, METHODS, Method, Options, dae_method, ode_method};
+use cognate::numeric::{METHODS, Method, Options, ode_method};
 use counting::allocations_so_far;
 use problems::*;
 
@@ -51,18 +51,9 @@ fn steps_allocate_nothing() {
         ..Options::default()
     };
     for row in METHODS {
-        let count = match row.form {
-            Form::Ode => {
-                let mut problem = System::new(Pendulum);
-                let mut method = ode_method(row.name, 2, &options).unwrap();
-                allocations(&mut *method, &mut problem, &Pendulum::START, 3)
-            }
-            Form::Dae => {
-                let mut problem = Implicit::new(Written(Pendulum));
-                let mut method = dae_method(row.name, 2, &options).unwrap();
-                allocations(&mut *method, &mut problem, &Pendulum::START, 3)
-            }
-        };
+        let mut problem = System::new(Pendulum);
+        let mut method = ode_method(row.name, 2, &options).unwrap();
+        let count = allocations(&mut *method, &mut problem, &Pendulum::START, 3);
         assert_eq!(count, 0, "{} allocates", row.name);
     }
 }

@@ -13,7 +13,7 @@ use running::{
     try_to, values, whole,
 };
 
-const METHODS: [&str; 6] = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
+const METHODS: [&str; 3] = ["AUTO", "DOP853", "RADAU5"];
 
 /// A mass of one on a spring, at 1 and at rest: it is at cos ωt along the z axis of MARKER/11.
 fn oscillator(omega: f64, more: &str) -> String {
@@ -181,7 +181,7 @@ fn a_mechanism_keeps_its_bits_whatever_is_downstream() {
 fn integrals_of_a_speed_are_displacements_through_stops_and_loops() {
     for (name, text, marker, end) in mechanisms() {
         let text = with(&text, &format!("DIFF/9002, IC=0, FUNCTION=VX({marker})\n"));
-        for method in ["AUTO", "DOP853", "RADAU5", "HHT"] {
+        for method in ["AUTO", "DOP853", "RADAU5"] {
             let wanted = ["DIF(9002)".to_string(), format!("DX({marker})")];
             let options = Options {
                 method: Some(method.into()),
@@ -198,9 +198,7 @@ fn integrals_of_a_speed_are_displacements_through_stops_and_loops() {
                 .zip(place)
                 .map(|(i, x)| (i - (x - place[0])).abs())
                 .fold(0.0, f64::max);
-            // HHT knows velocities and positions to the request each, not one as the integral of the other
-            let tolerance = if method == "HHT" { 2e-3 } else { 2e-4 };
-            assert!(worst < tolerance, "{name} by {method}: {worst:e}");
+            assert!(worst < 2e-4, "{name} by {method}: {worst:e}");
         }
     }
 }
@@ -242,11 +240,8 @@ fn filters_and_filters_behind_filters_are_as_exact_as_asked_for() {
              MATRIX/2, FULL=RORDER, ROWS=1, COLUMNS=1, VALUES={k:?}\nMATRIX/3, FULL=RORDER, ROWS=1, COLUMNS=1, VALUES=1\n\
              LSE/1, X=11, U=10, Y=13, IC=14, A=1, B=2, C=3\n"
         );
-        for method in ["AUTO", "DOP853", "RADAU5", "BDF"] {
+        for method in ["AUTO", "DOP853", "RADAU5"] {
             for error in [1e-4, 1e-6, 1e-9] {
-                if method == "BDF" && error < 1e-6 {
-                    continue;
-                }
                 let columns = ["DIF(1)", "DIF(2)", "ARYVAL(13,1)"];
                 let mut s = session_by(&oscillator(omega, &more), &columns, method, error);
                 go(&mut s, Analysis::Dynamic, 2.0, 40);
@@ -255,7 +250,7 @@ fn filters_and_filters_behind_filters_are_as_exact_as_asked_for() {
                         off(&s, columns[column], |t| filtered(omega, k, 0.5, t)[k_th])
                     });
                 // errors of two revolutions of the mechanism are among them
-                let permitted = if method == "BDF" { 3e3 } else { 3e2 } * error;
+                let permitted = 3e2 * error;
                 let worst = of_filter.max(of_integral).max(of_lse);
                 assert!(
                     worst < permitted,
@@ -460,7 +455,7 @@ fn simulations_and_saved_states_go_on_with_them() {
 fn one_that_grows_without_bound_ends_the_run_by_its_name() {
     // x = 1/(1 − t)
     let text = oscillator(3.0, "DIFF/7, IC=1, FUNCTION=DIF(7)**2\n");
-    for method in ["AUTO", "RADAU5", "BDF"] {
+    for method in ["AUTO", "RADAU5"] {
         let mut s = session_by(&text, &["DIF(7)"], method, 1e-6);
         let status = try_to(&mut s, Analysis::Dynamic, 2.0, 20);
         assert_eq!(status, Status::Stopped, "{method}");

@@ -5,7 +5,7 @@ use crate::running;
 use cognate::results::Energy;
 use running::{Analysis, go, session_by};
 
-const METHODS: [&str; 3] = ["DOP853", "RADAU5", "BDF"];
+const METHODS: [&str; 2] = ["DOP853", "RADAU5"];
 
 /// The account of a dynamic run.
 fn account(text: &str, method: &str, (end, steps): (f64, usize), error: f64) -> Energy {
@@ -165,7 +165,7 @@ fn the_number_of_outputs_changes_nothing_in_the_account_of_a_driven_mechanism() 
     near(driven(turning, 5.0, 3).by_functions, work, 1e-6 * work);
 }
 
-const ALL_METHODS: [&str; 6] = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
+const ALL_METHODS: [&str; 3] = ["AUTO", "DOP853", "RADAU5"];
 
 /// Where forces balance, rounding and permitted errors move what is at rest: a balance of nothing else has no error.
 #[test]
@@ -247,9 +247,6 @@ fn work_of_forces_that_jump_closes_the_account() {
     for force in forces {
         for method in ALL_METHODS {
             for error in [1e-3, 1e-6] {
-                if error < 1e-5 && ["HHT", "NEWMARK"].contains(&method) {
-                    continue;
-                }
                 let e = account(&slider(force), method, (3.0, 10), error);
                 let permitted = if error < 1e-5 { 1e-3 } else { 0.05 };
                 assert!(

@@ -3,8 +3,7 @@
 use crate::problems;
 
 use cognate::numeric::{
-    Dae, Dop853, Failure, Form, Kind, METHODS, Method, MethodRow, Ode, Options, Reason, Relation,
-    dae_method, ode_method,
+    Dop853, Failure, METHODS, Method, MethodRow, Ode, Options, Reason, Relation, ode_method,
 };
 use problems::*;
 
@@ -192,93 +191,6 @@ fn stiff_bushing(name: &str, tolerance: f64) -> (f64, usize) {
     ode_trial((name, tolerance), StiffBushing, from, judge, exact, seen)
 }
 
-/// Final error of a DAE method on equations with a known end.
-fn dae_trial<E: Equations>(
-    name: &str,
-    tolerance: f64,
-    equations: E,
-    end: f64,
-    start: &[f64],
-    judge: &mut Judge,
-    mut see: impl FnMut(&mut Judge, &[f64]),
-) -> (f64, usize) {
-    let mut problem = Implicit::new(equations);
-    let mut y = start.to_vec();
-    y.resize(problem.size(), 0.0);
-    let mut method = dae_method(name, y.len(), &options(tolerance)).expect("the table has it");
-    let outcome = run(&mut *method, &mut problem, (0.0, end), &y, 1, |_, y| {
-        see(judge, y)
-    });
-    if std::env::var("STATS").is_ok() {
-        println!("{:?}", method.stats());
-    }
-    outcome.expect("it arrives");
-    (judge.verdict(), method.stats().evaluations)
-}
-
-fn dae_pendulum(name: &str, tolerance: f64) -> (f64, usize) {
-    let mut judge = Judge::new(4);
-    dae_trial(
-        name,
-        tolerance,
-        Written(Pendulum),
-        10.0,
-        &Pendulum::START,
-        &mut judge,
-        |j, y| j.see(&Pendulum::point(y), &Pendulum::AFTER_10),
-    )
-}
-
-/// The same where the first unknowns are compared.
-fn plain_dae_trial<E: Equations>(
-    (name, tolerance): (&str, f64),
-    equations: E,
-    (end, start): (f64, &[f64]),
-    exact: &[f64],
-) -> (f64, usize) {
-    let judge = &mut Judge::new(exact.len());
-    let see = |judge: &mut Judge, y: &[f64]| judge.see(&y[..exact.len()], exact);
-    dae_trial(name, tolerance, equations, end, start, judge, see)
-}
-
-fn dae_hires(name: &str, tolerance: f64) -> (f64, usize) {
-    let from = (Hires::END, &Hires::START[..]);
-    plain_dae_trial((name, tolerance), Written(Hires), from, &Hires::AT_END)
-}
-
-fn dae_robertson(name: &str, tolerance: f64) -> (f64, usize) {
-    let from = (40.0, &Robertson::START[..]);
-    plain_dae_trial(
-        (name, tolerance),
-        Written(Robertson),
-        from,
-        &Robertson::AFTER_40,
-    )
-}
-
-fn dae_van_der_pol(name: &str, tolerance: f64) -> (f64, usize) {
-    let from = (2.0, &VanDerPol::START[..]);
-    plain_dae_trial(
-        (name, tolerance),
-        Written(VanDerPol),
-        from,
-        &VanDerPol::AFTER_2,
-    )
-}
-
-fn constrained(index: usize, name: &str, tolerance: f64) -> (f64, usize) {
-    let from = (10.0, &[-1.0, 0.0, 0.0, 0.0][..]);
-    let equations = ConstrainedPendulum { index };
-    plain_dae_trial((name, tolerance), equations, from, &Pendulum::AFTER_10)
-}
-
-fn index_1(name: &str, tolerance: f64) -> (f64, usize) {
-    constrained(1, name, tolerance)
-}
-fn index_2(name: &str, tolerance: f64) -> (f64, usize) {
-    constrained(2, name, tolerance)
-}
-
 /// Work and true error over the range of requests.
 fn proportional(name: &str, what: &str, trial: Trial, requests: &[i32], allowed: f64) {
     let mut table = String::new();
@@ -337,121 +249,6 @@ fn error_follows_the_request_on_what_is_stiff() {
 }
 
 #[test]
-fn error_follows_the_request_of_dae_methods() {
-    let requests = [3, 4, 5, 6, 7, 8, 9, 10];
-    let name = "BDF";
-    proportional(name, "pendulum", dae_pendulum, &requests, 40.0);
-    proportional(name, "van der Pol", dae_van_der_pol, &requests, 10.0);
-    proportional(name, "Robertson", dae_robertson, &requests, 10.0);
-    proportional(name, "HIRES", dae_hires, &requests, 10.0);
-    proportional(name, "index 2 pendulum", index_2, &requests, 50.0);
-    // the position constraint comes from accelerations alone and drifts
-    proportional(name, "index 1 pendulum", index_1, &requests, 500.0);
-}
-
-#[test]
-fn error_follows_the_request_of_second_order_methods() {
-    let requests = [2, 3, 4, 5, 6];
-    for name in ["HHT", "NEWMARK"] {
-        proportional(name, "pendulum", dae_pendulum, &requests, 40.0);
-        proportional(name, "HIRES", dae_hires, &requests, 10.0);
-        proportional(name, "Robertson", dae_robertson, &requests, 10.0);
-        proportional(name, "index 2 pendulum", index_2, &requests, 60.0);
-    }
-}
-
-/// Error at the end, largest error of the interpolant, and steps, of a DAE method on the oscillator.
-fn oscillator_run(name: &str, max_order: usize, tolerance: f64) -> (f64, f64, usize) {
-    let mut problem = Implicit::new(Written(Oscillator));
-    let options = Options {
-        tolerance,
-        max_order,
-        ..Options::default()
-    };
-    let mut method = dae_method(name, 2, &options).unwrap();
-    method.start(&mut problem, 0.0, &[0.0, 1.0]).unwrap();
-    let (mut inside, mut y, mut ydot) = (0.0f64, [0.0; 2], [0.0; 2]);
-    while method.t() < 10.0 {
-        let step = method.step(&mut problem, 10.0).unwrap();
-        for part in [0.21, 0.5, 0.83] {
-            let t = step.t0 + part * step.h;
-            method.interpolate(&mut problem, t, &mut y).unwrap();
-            inside = inside
-                .max((y[0] - t.sin()).abs())
-                .max((y[1] - t.cos()).abs());
-            method.interpolate_rate(&mut problem, t, &mut ydot).unwrap();
-            assert!((ydot[0] - y[1]).abs() < 0.3 * tolerance.sqrt());
-        }
-    }
-    // of both unknowns: one of them may pass through zero there
-    let end = [f64::sin(10.0), f64::cos(10.0)];
-    let off = [0, 1].map(|k| method.y()[k] - end[k]);
-    (off[0].hypot(off[1]), inside, method.stats().steps)
-}
-
-#[test]
-fn methods_of_variable_step_show_their_order_as_work() {
-    for (name, order) in [
-        ("BDF", 1),
-        ("BDF", 2),
-        ("BDF", 3),
-        ("BDF", 4),
-        ("BDF", 5),
-        ("HHT", 2),
-        ("NEWMARK", 2),
-    ] {
-        let (coarse, fine) = if order == 1 {
-            (1e-1, 1e-2)
-        } else {
-            (1e-3, 1e-6)
-        };
-        let (a, b) = (
-            oscillator_run(name, order, coarse),
-            oscillator_run(name, order, fine),
-        );
-        let more = (b.2 as f64 / a.2 as f64).ln();
-        let (slope, inside) = ((a.0 / b.0).ln() / more, (a.1 / b.1).ln() / more);
-        let order = order as f64;
-        assert!(
-            slope > order - 0.3 && slope < order + 0.7,
-            "{name} {order}: {slope} at the end"
-        );
-        assert!(
-            inside > order - 0.3 && inside < order + 0.7,
-            "{name} {order}: {inside} inside steps"
-        );
-    }
-}
-
-#[test]
-fn index_3_keeps_its_constraint_and_gains_with_the_request() {
-    let mut last = f64::INFINITY;
-    for request in [1e-4, 1e-6, 1e-8] {
-        let mut problem = Implicit::new(ConstrainedPendulum { index: 3 });
-        let mut method = dae_method("BDF", 5, &options(request)).unwrap();
-        method
-            .start(&mut problem, 0.0, &[-1.0, 0.0, 0.0, 0.0, 0.0])
-            .unwrap();
-        let (mut drift, mut gap) = (0.0f64, 0.0f64);
-        while method.t() < 10.0 {
-            method.step(&mut problem, 10.0).unwrap();
-            let y = method.y();
-            gap = gap.max((y[0] * y[0] + y[1] * y[1] - 1.0).abs());
-            drift = drift.max((0.5 * (y[2] * y[2] + y[3] * y[3]) + 9.81 * y[1]).abs());
-        }
-        assert!(
-            gap < 0.1 * request,
-            "constraint is off by {gap} at {request}"
-        );
-        assert!(
-            drift < 0.2 * last,
-            "energy is off by {drift} at {request}, by {last} before"
-        );
-        last = drift;
-    }
-}
-
-#[test]
 fn projection_keeps_invariants_and_costs_no_evaluation() {
     let mut problem = System::new(CartesianPendulum);
     let mut method = Dop853::new(4, &options(1e-6));
@@ -503,41 +300,6 @@ impl Ode for Faulty {
     }
 }
 
-impl Dae for Faulty {
-    fn size(&self) -> usize {
-        2
-    }
-    fn residual(&mut self, t: f64, y: &[f64], ydot: &[f64], r: &mut [f64]) -> Result<(), Failure> {
-        self.calls += 1;
-        (r[0], r[1]) = (ydot[0] - y[1], ydot[1] + y[0]);
-        (self.fault)(t, r)
-    }
-    fn pattern(&self) -> Vec<(usize, usize)> {
-        vec![(0, 0), (1, 0), (0, 1), (1, 1)]
-    }
-    fn jacobian(
-        &mut self,
-        _t: f64,
-        _y: &[f64],
-        _ydot: &[f64],
-        cj: f64,
-        values: &mut [f64],
-    ) -> Result<(), Failure> {
-        values.copy_from_slice(&[cj, 1.0, -1.0, cj]);
-        Ok(())
-    }
-    fn consistent(&mut self, _t: f64, y: &mut [f64], ydot: &mut [f64]) -> Result<(), Failure> {
-        (ydot[0], ydot[1]) = (y[1], -y[0]);
-        Ok(())
-    }
-    fn kinds(&self) -> Vec<Kind> {
-        vec![Kind::Differential; 2]
-    }
-    fn typical(&self, typical: &mut [f64]) {
-        typical.fill(1.0);
-    }
-}
-
 /// Where a run over a faulty problem stops, why, and after how many calls.
 fn stop_of(
     row: &MethodRow,
@@ -545,11 +307,7 @@ fn stop_of(
 ) -> (f64, Reason, usize) {
     let mut problem = Faulty { fault, calls: 0 };
     let options = options(1e-5);
-    let mut method = match row.form {
-        Form::Ode => ode_method::<Faulty>(row.name, 2, &options),
-        Form::Dae => dae_method::<Faulty>(row.name, 2, &options),
-    }
-    .unwrap();
+    let mut method = ode_method::<Faulty>(row.name, 2, &options).unwrap();
     let stop = match method.start(&mut problem, 0.0, &[0.0, 1.0]) {
         Err(stop) => stop,
         Ok(()) => loop {
@@ -628,7 +386,7 @@ fn a_pole_stops_with_an_underflow_of_the_step() {
             ydot[0] = y[0].square();
         }
     }
-    for row in METHODS.iter().filter(|row| row.form == Form::Ode) {
+    for row in METHODS {
         let mut problem = System::new(Pole);
         let mut method = ode_method(row.name, 1, &options(1e-6)).unwrap();
         method.start(&mut problem, 0.0, &[1.0]).unwrap();
@@ -680,7 +438,7 @@ fn a_guess_of_the_first_step_that_is_too_short_is_no_reason_to_stop() {
     }
     assert!((method.y()[0] - 1.0_f64.cos()).abs() < 1e-4);
     // the whole way to the pole at 1e-15 lies in it
-    for row in METHODS.iter().filter(|row| row.form == Form::Ode) {
+    for row in METHODS {
         let mut problem = System::new(Pole);
         let mut method = ode_method(row.name, 1, &options).unwrap();
         method.start(&mut problem, 0.0, &[1e15]).unwrap();

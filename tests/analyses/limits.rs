@@ -29,7 +29,7 @@ fn limited(text: &str, method: &str, limit: f64) -> Session {
 
 #[test]
 fn every_method_ends_at_its_limit_with_the_rows_so_far() {
-    for method in ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"] {
+    for method in ["AUTO", "DOP853", "RADAU5"] {
         let clock = Instant::now();
         let mut session = limited(PENDULUM, method, LIMIT);
         let status = session.simulate(Analysis::Dynamic, 1e7, 1_000_000_000, &mut Unwatched);
@@ -86,7 +86,7 @@ fn every_method_lets_its_caller_look_after_a_few_evaluations_of_a_large_model() 
              MARKER/{end}, PART={k}, QP=1,0,0\nJOINT/{k}, REVOLUTE, I={own}, J={before}\n"
         );
     }
-    for method in ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"] {
+    for method in ["AUTO", "DOP853", "RADAU5"] {
         for (error, accuracy) in [
             (1e-3, Accuracy::Unknown),
             (1e-9, Accuracy::Digits),

@@ -55,7 +55,7 @@ fn an_operand_without_value_stops_a_run_although_its_operation_would_lose_it() {
         "MIN(5,1/AZ(2,3))",
     ] {
         let text = format!("{HINGE}SFORCE/7, ROTATION, I=2, J=3, FUNCTION={function}\n");
-        for method in ["AUTO", "DOP853", "RADAU5", "BDF"] {
+        for method in ["AUTO", "DOP853", "RADAU5"] {
             let mut s = session(&text, &[], 1e-6);
             s.model.integrator.method = Some(method.into());
             let outcome = s.simulate(Analysis::Dynamic, 1.0, 3, &mut Unwatched);

@@ -4,7 +4,7 @@ use crate::running;
 
 use running::{Analysis, begin, go, model, off, options_by, session_by};
 
-const METHODS: [&str; 5] = ["DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
+const METHODS: [&str; 2] = ["DOP853", "RADAU5"];
 const REQUESTS: [f64; 2] = [1e-3, 1e-5];
 
 const SLIDER: &str = "PART/2, MASS=1, CM=2\nMARKER/2, PART=2, REULER=90D,90D,0\nMARKER/3, PART=1, REULER=90D,90D,0\n\
@@ -104,17 +104,15 @@ fn crank_rod_and_slider(scale: f64) -> String {
 }
 
 #[test]
-fn the_unit_of_length_hardly_changes_the_steps_of_implicit_methods() {
-    for method in ["BDF", "HHT", "NEWMARK", "RADAU5"] {
-        let steps = [1.0, 1e3, 1e-3].map(|scale| {
-            let options = options_by(&[], method, 1e-5);
-            let mut s = begin(model(&crank_rod_and_slider(scale)), "crank", options);
-            go(&mut s, Analysis::Dynamic, 0.5, 50);
-            s.run.record.counts.steps as f64
-        });
-        for other in steps {
-            let ratio = other / steps[0];
-            assert!((0.8..1.25).contains(&ratio), "{method}: {steps:?}");
-        }
+fn the_unit_of_length_hardly_changes_the_steps_of_the_implicit_method() {
+    let steps = [1.0, 1e3, 1e-3].map(|scale| {
+        let options = options_by(&[], "RADAU5", 1e-5);
+        let mut s = begin(model(&crank_rod_and_slider(scale)), "crank", options);
+        go(&mut s, Analysis::Dynamic, 0.5, 50);
+        s.run.record.counts.steps as f64
+    });
+    for other in steps {
+        let ratio = other / steps[0];
+        assert!((0.8..1.25).contains(&ratio), "{steps:?}");
     }
 }

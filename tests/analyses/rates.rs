@@ -1,9 +1,8 @@
-//! Rates depend on time, state and configuration alone: asked again, in another order, after other questions or beside the equations of
-//! implicit methods, they have the same bits.
+//! Rates depend on time, state and configuration alone: asked again, in another order or after other questions, they have the same
+//! bits.
 
 use cognate::analysis::start::{assemble, velocities};
 use cognate::analysis::system::System;
-use cognate::analysis::system::implicit::Formulation;
 use cognate::model::Model;
 use cognate::numeric::Ode;
 use cognate::scene::configuration::Configuration;
@@ -170,12 +169,6 @@ proptest! {
         for &k in &order {
             ask_otherwise(&mut other, &states[(k + 1) % states.len()]);
             prop_assert_eq!(&rate(&mut other, &states[k]), &expected[k], "{} after other questions", name);
-        }
-        let (mut implicit, _) = system(name);
-        if implicit.make_implicit(Formulation::Stabilized).is_ok() {
-            for &k in &order {
-                prop_assert_eq!(&rate(&mut implicit, &states[k]), &expected[k], "{} beside residuals", name);
-            }
         }
     }
 }

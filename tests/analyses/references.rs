@@ -159,20 +159,14 @@ fn a_governor_with_a_stiff_spring() {
     stays_in_proportion("a05_flyball", &CONTACT_REQUESTS, 100.0);
 }
 
-/// Methods of lower order accumulate more of what each step permits.
-fn every_method(problem: &str) {
-    for (method, requests, factor) in [
-        ("DOP853", [1e-4, 1e-6], 100.0),
-        ("RADAU5", [1e-4, 1e-6], 100.0),
-        ("BDF", [1e-4, 1e-6], 1000.0),
-        ("HHT", [1e-3, 1e-5], 1000.0),
-    ] {
+fn both_methods(problem: &str) {
+    for method in ["DOP853", "RADAU5"] {
         let mut last = f64::INFINITY;
-        for request in requests {
+        for request in [1e-4, 1e-6] {
             let (error, _) = solve_by(problem, request, Some(method));
             println!("{problem} by {method}: request {request:e}, true error {error:.1e}");
             assert!(
-                error < factor * request,
+                error < 100.0 * request,
                 "{method} at {request:e}: {error:e}"
             );
             assert!(error < 0.3 * last, "{method}: {last:e}, then {error:e}");
@@ -181,14 +175,14 @@ fn every_method(problem: &str) {
     }
 }
 #[test]
-fn a_pendulum_by_every_method() {
-    every_method("a01_pendulum");
+fn a_pendulum_by_both_methods() {
+    both_methods("a01_pendulum");
 }
 #[test]
-fn a_mechanism_of_loops_by_every_method() {
-    every_method("a03_andrews");
+fn a_mechanism_of_loops_by_both_methods() {
+    both_methods("a03_andrews");
 }
 #[test]
-fn a_top_by_every_method() {
-    every_method("heavy_top");
+fn a_top_by_both_methods() {
+    both_methods("heavy_top");
 }

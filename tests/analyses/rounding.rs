@@ -51,11 +51,12 @@ fn is_rounding(warning: &str) -> bool {
     warning.contains("below rounding") || warning.contains("cannot be reached: rounding")
 }
 
-/// Methods of lower order follow the hum in more steps than rounding would need, so that none is asked for in vain; what
+/// An implicit method follows the hum in more steps than rounding would need, so that none is asked for in vain; what
 /// rounding adds up to is more than the request all the same.
 #[test]
-fn implicit_methods_take_a_bounded_number_of_steps_and_tell_what_rounding_adds_up_to() {
-    for method in ["RADAU5", "BDF"] {
+fn an_implicit_method_takes_a_bounded_number_of_steps_and_tells_what_rounding_adds_up_to() {
+    {
+        let method = "RADAU5";
         for (ratio, error, tells) in [
             (1e10, 1e-8, None),
             (1e10, 1e-10, None),
@@ -103,13 +104,8 @@ fn free_part(x: f64) -> String {
 /// makes large: velocities were wrong by up to 3000 requests at 10⁶.
 #[test]
 fn moving_a_whole_model_changes_no_answer_beyond_rounding() {
-    for method in ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"] {
-        let finest = if method == "HHT" || method == "NEWMARK" {
-            1e-3
-        } else {
-            1e-6
-        };
-        for request in [1e-2, finest] {
+    for method in ["AUTO", "DOP853", "RADAU5"] {
+        for request in [1e-2, 1e-6] {
             let columns = ["DX(2,9)", "VX(2,9)", "VY(2,9)"];
             let go_at = |x: f64| {
                 let mut s = running::session_by(&free_part(x), &columns, method, request);
@@ -150,9 +146,9 @@ const SLIDER_CRANK: &str = "SLIDER-CRANK\n\
     JOINT/2, REVOLUTE, I=31, J=22\nJOINT/3, REVOLUTE, I=40, J=32\n\
     JOINT/4, TRANSLATIONAL, I=41, J=2\nEND\n";
 
-/// Methods permit far less in a step than the request: HHT 1e-14 of a way at 1e-9, which was less than the last digit of
-/// a coordinate, so that steps became ever shorter and the run stopped. And Newton's iteration must not leave more than
-/// they permit: what it left at once as rounding, 1e-13, added up to 7e-9.
+/// What is permitted in a step is no less than the last digit of a coordinate: else steps become ever shorter and the run
+/// stops. And Newton's iteration must not leave more than is permitted: what it left at once as rounding, 1e-13, added up
+/// to 7e-9.
 #[test]
 fn no_method_asks_for_less_than_the_digits_of_a_coordinate_have() {
     let last = |method: &str, error: f64| {
@@ -165,40 +161,13 @@ fn no_method_asks_for_less_than_the_digits_of_a_coordinate_have() {
         (ends, n_steps)
     };
     let (expected, _) = last("DOP853", 1e-11);
-    for (method, most) in [
-        ("RADAU5", 100),
-        ("BDF", 200),
-        ("HHT", 5_000),
-        ("NEWMARK", 40_000),
-    ] {
-        for error in [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12] {
-            let (ends, n_steps) = last(method, error);
-            assert!(n_steps < most, "{method} at {error:e}: {n_steps} steps");
-            for (end, expected) in ends.iter().zip(&expected) {
-                let off = ((end - expected) / expected).abs();
-                assert!(off < error.max(1e-11), "{method} at {error:e}: {off:e}");
-            }
+    for error in [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12] {
+        let (ends, n_steps) = last("RADAU5", error);
+        assert!(n_steps < 100, "{error:e}: {n_steps} steps");
+        for (end, expected) in ends.iter().zip(&expected) {
+            let off = ((end - expected) / expected).abs();
+            assert!(off < error.max(1e-11), "{error:e}: {off:e}");
         }
-    }
-}
-
-/// Where rounding of a closed loop is more than a method permits in a step, short steps succeed by chance, and steps became
-/// ever shorter: HHT stopped at 5e-6 s by a request of 1e-8.
-#[test]
-fn methods_of_second_order_go_on_where_rounding_of_loops_is_felt() {
-    let text = include_str!("../data/references/a03_andrews.adm");
-    let column = "WZ(2)";
-    let end = |method: &str, error: f64| {
-        let mut options = options_by(&[column], method, error);
-        options.max_steps = Some(50_000);
-        let mut s = begin(whole(text), method, options);
-        go(&mut s, Analysis::Dynamic, 2e-4, 2);
-        running::last(&s, column)
-    };
-    let expected = end("DOP853", 1e-11);
-    for error in [1e-8, 1e-9, 1e-10] {
-        let off = (end("HHT", error) / expected - 1.0).abs();
-        assert!(off < 1e-8, "{error:e}: {off:e}");
     }
 }
 
@@ -221,7 +190,7 @@ fn on_a_bushing(mass: f64, [stiffness, damping]: [f64; 2]) -> String {
 fn short_runs_take_few_steps_however_far_from_the_origin() {
     const MOST_STEPS: usize = 5_000;
     let text = on_a_bushing(1.0, [1e5, 10.0]);
-    for method in ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"] {
+    for method in ["AUTO", "DOP853", "RADAU5"] {
         for error in [1e-3, 1e-6, 1e-8, 1e-9] {
             for end in [1e-12, 1e-9, 1e-7, 1e-6] {
                 let mut options = options_by(&["VX(20)"], method, error);
@@ -245,13 +214,12 @@ fn begun_speed(t: f64) -> f64 {
     -1e5 * 0.12 * t
 }
 
-/// However much longer a run is than its first transient, the transient is followed and the rest reached. NEWMARK damps
-/// nothing that is stiff, and may go on vibrating.
+/// However much longer a run is than its first transient, the transient is followed and the rest reached.
 #[test]
 fn runs_end_at_rest_whatever_their_duration() {
     for (mass, law) in [(1.0, [1e5, 1e3]), (1e-3, [1e9, 1e5])] {
         let text = on_a_bushing(mass, law);
-        for method in ["AUTO", "RADAU5", "BDF", "HHT"] {
+        for method in ["AUTO", "RADAU5"] {
             for error in [1e-3, 1e-5] {
                 for end in [1e3, 1e6, 1e9] {
                     let mut s = begin(

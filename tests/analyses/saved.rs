@@ -202,7 +202,7 @@ fn what_a_method_leaves_is_saved_with_the_state() {
     let model = "what a method leaves\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=2, CM=20, IP=0.1,0.1,0.1\nMARKER/20, PART=2, QP=1,0,0\n\
         MARKER/21, PART=2\nJOINT/1, REVOLUTE, I=21, J=1, IC=0.3,5\nACCGRAV/JGRAV=-9.81\nDIFF/1, IC=1, FUNCTION=2E3*(AZ(21,1)-DIF(1))\n\
         SFORCE/1, ROTATION, I=21, J=1, FUNCTION=-300*DIF(1)-IMPACT(AZ(21,1),WZ(21,1),0.1,1E3,1.5,1,0.1)\nEND\n";
-    for method in ["RADAU5", "DOP853", "AUTO", "BDF"] {
+    for method in ["RADAU5", "DOP853", "AUTO"] {
         let with = |text: &str| {
             let mut options = options(&["AZ(21,1)", "WZ(21,1)", "DIF(1)"], 1e-6);
             options.method = Some(method.into());

@@ -4,6 +4,7 @@ use crate::running::{Analysis, Options, Session, begin, whole};
 
 use cognate::Error;
 use cognate::dataset::manual::example;
+use cognate::diagnostic::Severity;
 use cognate::model::Formula;
 use cognate::results::Status;
 use std::sync::mpsc::channel;
@@ -307,7 +308,7 @@ fn pieces_whose_stiffness_jumps_are_as_exact_as_asked_for() {
     let pieces: Vec<[f64; 3]> = (0..n * n)
         .map(|k| kinds[(k % n) * (k / n + 1) % n])
         .collect();
-    for method in ["RADAU5", "DOP853", "AUTO", "BDF"] {
+    for method in ["RADAU5", "DOP853", "AUTO"] {
         let (_, ends) = in_pieces(method, &pieces);
         let (mut state, mut largest) = ([0.0; 2], [1e-3_f64; 2]);
         for (numbers, end) in pieces.iter().zip(&ends) {
@@ -395,4 +396,60 @@ fn a_replay_of_short_simulations_takes_the_method_of_a_long_one() {
     let simulations = &short.run.record.simulations;
     assert_eq!(simulations[0].method, "DOP853");
     assert_eq!(simulations[199].method, "RADAU5");
+}
+
+/// Names of methods of other programs are those of ours that do their work, to the bit.
+#[test]
+fn names_of_other_programs_are_done_by_our_methods() {
+    let by = |method: &str| {
+        let mut s = session(Options {
+            method: Some(method.into()),
+            ..with_columns()
+        });
+        go(&mut s, 2.0);
+        assert!(s.run.record.warnings.is_empty(), "{method}");
+        bits(&s)
+    };
+    let implicit = by("RADAU5");
+    for name in [
+        "GSTIFF",
+        "WSTIFF",
+        "HASTIFF",
+        "CONSTANT_BDF",
+        "HHT",
+        "newmark",
+        "BDF",
+    ] {
+        assert_eq!(by(name), implicit, "{name}");
+    }
+    let explicit = by("DOP853");
+    assert_ne!(explicit, implicit);
+    for name in ["ABAM", "RKF45"] {
+        assert_eq!(by(name), explicit, "{name}");
+    }
+}
+
+/// Where a method of another order is named, a note says who does its work.
+#[test]
+fn a_method_of_order_two_is_said_to_be_done_by_ours() {
+    let noted = |settings: &str| {
+        let text = PENDULUM.replace("END\n", &format!("{settings}\nEND\n"));
+        let found = whole(&text).check();
+        found
+            .iter()
+            .map(|d| (d.severity, d.message.clone()))
+            .collect::<Vec<_>>()
+    };
+    for (settings, word) in [
+        ("INTEGRATOR/HHT", "HHT is done by RADAU5"),
+        ("INTEGRATOR/NEWMARK", "NEWMARK is done by RADAU5"),
+        ("INTEGRATOR/GSTIFF, KMAX=3", "KMAX = 3 changes nothing"),
+    ] {
+        let notes = noted(settings);
+        assert!(
+            matches!(&notes[..], [(Severity::Note, what)] if what.contains(word)),
+            "{settings}: {notes:?}"
+        );
+    }
+    assert_eq!(noted("INTEGRATOR/GSTIFF, SI2"), []);
 }

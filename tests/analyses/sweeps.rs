@@ -115,7 +115,7 @@ SPRINGDAMPER/4, ROTATION, I=21, J=1, CT=0.4, KT=3
 fn rows_of_every_method_are_those_of_a_run_alone_to_the_bit() {
     let driven = crank("MOTION/1, JOINT=1, ROTATION, FUNCTION=TIME**2\n");
     let free = crank("");
-    let methods = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
+    let methods = ["AUTO", "DOP853", "RADAU5"];
     let cases = methods.map(|method| (&free, method)).into_iter();
     for (text, method) in cases.chain([(&driven, "AUTO")]) {
         let mut s = sweep(text, 0.5, 10);

@@ -263,7 +263,7 @@ fn commands_go_on_after_a_return_and_end_after_a_halt() {
 fn a_sensor_returns_once_for_each_time_that_it_is_reached() {
     let swing = "SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=2, J=3, FUNCTION=-69*DZ(2,3,3)\n";
     let omega = 69.0_f64.sqrt();
-    for (method, error) in [("DOP853", 1e-8), ("RADAU5", 1e-8), ("BDF", 1e-7)] {
+    for (method, error) in [("DOP853", 1e-8), ("RADAU5", 1e-8)] {
         for k in 0..12 {
             // the part begins at rest at 0.415; it passes below x once in each swing
             let x = 0.4 * (0.5 * f64::from(k) - 2.9) / 3.0;
@@ -643,7 +643,7 @@ fn a_sensor_shortens_the_next_step_or_begins_anew() {
         s.run.record.counts.steps
     };
     let sensor = "SENSOR/1, FUNCTION=TIME\\, VALUE=0.5, GE";
-    for method in ["DOP853", "RADAU5", "BDF"] {
+    for method in ["DOP853", "RADAU5"] {
         let plain = steps(method, "");
         let anew = steps(method, &format!("{sensor}, RESTART\n"));
         let short = steps(method, &format!("{sensor}, STEPSIZE=1E-6\n"));
@@ -651,11 +651,7 @@ fn a_sensor_shortens_the_next_step_or_begins_anew() {
         // (implicit methods grow their steps so slowly that beginning anew may even save some)
         assert!(anew > plain || method != "DOP853", "{plain} {anew}");
         assert!(short >= plain + 3, "{method}: {plain} {short}");
-        // what BDF loses by beginning anew is its order, which costs it more than a short step
-        assert!(
-            short >= anew + 3 || method == "BDF",
-            "{method}: {anew} {short}"
-        );
+        assert!(short >= anew + 3, "{method}: {anew} {short}");
     }
 }
 
@@ -853,7 +849,7 @@ fn numbers_that_commands_change_do_what_new_models_would() {
     let commands = "\nSIM/DYN, END=0.5, STEPS=2\nVAR/1, FUN=-1.5\nSIM/DYN, END=1, STEPS=2\nVAR/1, FUN=3.0E-01\n\
                     SIM/DYN, END=1.5, STEPS=2\nVAR/1, FUN=TIME**2\nSIM/DYN, END=2, STEPS=2\nVAR/1, FUN=1\n\
                     SIM/DYN, END=2.5, STEPS=2\nDEACT/SFORCE, ID=1\nSIM/DYN, END=3, STEPS=2\n";
-    for method in ["AUTO", "RADAU5", "BDF"] {
+    for method in ["AUTO", "RADAU5"] {
         let columns = ["DX(2,1,1)", "VX(2,1,1)", "DIF(1)", "VARVAL(2)"];
         let mut known = session(model, &columns, method);
         let script = Script::from_text(commands).unwrap();
@@ -985,7 +981,7 @@ fn sensors_act_at_the_instant_at_which_they_are_passed() {
         ),
     ];
     for (statements, expected) in cases {
-        for method in ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"] {
+        for method in ["AUTO", "DOP853", "RADAU5"] {
             for outputs in [3, 200] {
                 let at = triggered(statements, (method, 1e-6, outputs));
                 let off = (at - expected).abs();
@@ -1025,27 +1021,4 @@ fn sensors_of_driven_mechanisms_act_where_they_are_passed() {
             );
         }
     }
-}
-
-/// However many FRICTIONs there are, what BDF does not solve is told in a line.
-#[test]
-fn loops_that_implicit_methods_do_not_solve_are_told_in_a_line() {
-    let mut text = String::from("ACCGRAV/JGRAV=-9.81\n");
-    for k in 1..=12 {
-        let (part, marker) = (k + 1, 10 * k + 10);
-        text += &format!(
-            "PART/{part}, MASS=1, CM={marker}, IP=1,1,1, QG={k},0,0\nMARKER/{marker}, PART={part}\n\
-             MARKER/{}, PART=1, QP={k},0,0\nJOINT/{k}, REVOLUTE, I={marker}, J={}\n\
-             FRICTION/{k}, JOINT={k}, MU_STATIC=0.3, MU_DYNAMIC=0.2, STICTION_TRANSITION_VELOCITY=0.01, \
-             PIN_RADIUS=0.1, FRICTION_ARM=0.1\n",
-            marker + 1,
-            marker + 1
-        );
-    }
-    let mut s = session_by(&text, &["AZ(20,1)"], "BDF", 1e-3);
-    running::go(&mut s, Analysis::Dynamic, 0.01, 1);
-    let warned = s.run.record.warned();
-    let told = warned.iter().find(|w| w.contains("takes its place"));
-    let told = told.expect("a warning");
-    assert!(told.len() < 250 && told.contains("more)"), "{told}");
 }

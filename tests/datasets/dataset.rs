@@ -188,7 +188,7 @@ fn keywords_may_be_abbreviated() {
     let m = model(
         "REQ/1, D, I=21, C=a comment\nREQ/2, V, I=21\nREQ/3, A, I=21\nREQ/4, F, I=21, J=11\n\
          GRAPH/1, ELL, CM=2, XS=1, YS=2, ZS=3\nGRAPH/2, BOX, COR=1, X=1, Y=2, Z=3\n\
-         SPRING/1, TRANSLATION, I=21, J=11, C=2, K=3\nVAR/1, FUN=1\nACCG/KGRAV=-9.8\nINT/HHT, ERR=1E-5\n\
+         SPRING/1, TRANSLATION, I=21, J=11, C=2, K=3\nVAR/1, FUN=1\nACCG/KGRAV=-9.8\nINT/WSTIFF, ERR=1E-5\n\
          EQUIL/ERR=1, IMB=2, TLIM=3, ALIM=4D, MAXIT=5, STAB=6",
     );
     assert!(matches!(
@@ -216,7 +216,7 @@ fn keywords_may_be_abbreviated() {
     assert_eq!(m.gravity, [0.0, 0.0, -9.8]);
     assert_eq!(
         (m.integrator.method.as_deref(), m.integrator.error),
-        (Some("HHT"), Some(1e-5))
+        (Some("WSTIFF"), Some(1e-5))
     );
     let e = &m.equilibrium;
     assert_eq!(

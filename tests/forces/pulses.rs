@@ -38,12 +38,7 @@ fn a_pulse_gives_its_momentum_however_long_the_run() {
         ),
         ("1/COSH((TIME-3)/0.02)**2", 10.0, 0.04),
     ] {
-        for (method, error) in [
-            ("AUTO", 1e-6),
-            ("AUTO", 1e-3),
-            ("RADAU5", 1e-6),
-            ("BDF", 1e-5),
-        ] {
+        for (method, error) in [("AUTO", 1e-6), ("AUTO", 1e-3), ("RADAU5", 1e-6)] {
             let s = pushed(function, method, error, end);
             let off = (last(&s, "VZ(2)") - momentum).abs() / momentum;
             // the request is of the error per step; there are some hundred steps
@@ -107,9 +102,8 @@ fn pulses_over_time_are_felt_by_every_method_whatever_their_length() {
         ("SIGN(1,SIN(7*PI*TIME))", 0.0),
         ("MOD(TIME,1)**50", 10.0 / 51.0),
     ] {
-        for method in ["DOP853", "RADAU5", "BDF", "HHT"] {
+        for method in ["DOP853", "RADAU5"] {
             let v = velocity(force, method);
-            // multi-step methods and those of low order add up their errors over many starts
             let room = if method == "DOP853" { 1e-6 } else { 1e-3 };
             assert!(
                 (v - expected).abs() < room * (1.0 + expected),
@@ -155,7 +149,7 @@ fn a_pole_that_stops_a_run_is_named_with_its_place() {
         ("TAN(PI*TIME)", "TAN(PI*TIME)"),
         ("SIN(TIME)+(TIME-0.5)**(-2)", "(TIME - 0.5)**-2"),
     ] {
-        for method in ["AUTO", "RADAU5", "BDF", "HHT"] {
+        for method in ["AUTO", "RADAU5"] {
             let text = format!(
                 "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nMARKER/3, PART=1\nJOINT/1, TRANSLATIONAL, I=2, J=3\n\
                  SFORCE/3, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION={function}\n"
@@ -194,7 +188,7 @@ proptest! {
         middle in 0.25f64..0.75,
         of_time in any::<bool>(),
         by in prop::sample::select(vec![
-            ("AUTO", 1e-6), ("AUTO", 1e-4), ("DOP853", 1e-8), ("RADAU5", 1e-6), ("BDF", 1e-5), ("HHT", 1e-4), ("NEWMARK", 1e-4),
+            ("AUTO", 1e-6), ("AUTO", 1e-4), ("DOP853", 1e-8), ("RADAU5", 1e-6),
         ]),
         outputs in 1usize..40,
     ) {
@@ -233,7 +227,7 @@ fn a_bump_of_a_curve_over_a_way_is_felt_however_short_it_is() {
                  SFORCE/1, TRANSLATION, ACTIONONLY, I=3, J=4, FUNCTION=0.2/{width:e}*{read}\n",
                 knots.join(",")
             );
-            for method in ["AUTO", "RADAU5", "BDF"] {
+            for method in ["AUTO", "RADAU5"] {
                 let mut s = session_by(&text, &["VX(2,1)"], method, 1e-6);
                 go(&mut s, Analysis::Dynamic, 1.0, 2);
                 // the area of its triangle

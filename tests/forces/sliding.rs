@@ -6,7 +6,7 @@ use crate::running;
 use cognate::results::Status;
 use running::{Analysis, Session, go, last, session_by, try_to};
 
-const METHODS: [&str; 6] = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
+const METHODS: [&str; 3] = ["AUTO", "DOP853", "RADAU5"];
 
 /// Masses that slide along z of ground, `speeds` at first, with forces between markers 1 (ground), 2 and 3.
 fn blocks(masses: &[f64], speeds: &[f64], forces: &str, method: &str) -> Session {
@@ -34,7 +34,7 @@ fn blocks_within(
     )
 }
 
-/// The error per step is 1e-7, of BDF and its like one of several hundred.
+/// The error per step is 1e-7, of one of several hundred.
 const NEAR: f64 = 2e-5;
 
 fn near(s: &Session, column: &str, expected: f64, what: &str) {
@@ -314,12 +314,10 @@ fn a_mass_lets_go_of_its_belt_whatever_else_swings() {
         (10.07, 3.0),
     ];
     for (width, turning) in swings {
-        for method in ["RADAU5", "BDF", "HHT", "NEWMARK"] {
-            for request in [1e-2, 1e-3] {
-                let off = off_beside(width, turning, (method, request));
-                let what = format!("{method} {request:e} beside {width} at {turning}");
-                assert!(off < 3.0 * request, "{what}: {off:e}");
-            }
+        for request in [1e-2, 1e-3] {
+            let off = off_beside(width, turning, ("RADAU5", request));
+            let what = format!("{request:e} beside {width} at {turning}");
+            assert!(off < 3.0 * request, "{what}: {off:e}");
         }
     }
 }

@@ -74,7 +74,7 @@ fn a_gcon_of_time_moves_what_it_holds() {
 #[test]
 fn an_angle_that_a_gcon_reads_may_be_any_by_every_method() {
     for angle in [0, 37, 90, 120] {
-        for method in ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"] {
+        for method in ["AUTO", "DOP853", "RADAU5"] {
             for read in ["AZ(20,1)", "ATAN2(DY(21,20), DX(21,20))"] {
                 let text = format!(
                     "PART/2, MASS=2, CM=20, IP=1,1,0.25, REULER={angle}D,0,0\nMARKER/20, PART=2\n\

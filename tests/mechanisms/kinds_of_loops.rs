@@ -119,9 +119,6 @@ fn right_or_told(name: &str, text: &str, columns: &[String], exact: &[Vec<f64>],
         ("AUTO", &[1e-2, 1e-4, 1e-6, 1e-8][..]),
         ("DOP853", &[1e-3, 1e-7]),
         ("RADAU5", &[1e-2, 1e-5]),
-        ("BDF", &[1e-2, 1e-4]),
-        ("HHT", &[1e-2, 1e-3]),
-        ("NEWMARK", &[1e-2, 1e-3]),
     ] {
         for &request in requests {
             let outputs = if runs % 2 == 0 { COARSE } else { FINE };

@@ -47,25 +47,22 @@ fn run(model: &Model, method: &str, error: f64, columns: &[String]) -> Session {
     s
 }
 
-/// The implicit methods factor sparse matrices whose entries were found by groups of columns; the explicit one knows of no Jacobian.
+/// The implicit method factors sparse matrices whose entries were found by groups of columns; the explicit one knows of no Jacobian.
 #[test]
-fn a_cantilever_of_twelve_parts_swings_alike_by_every_method() {
+fn a_cantilever_of_twelve_parts_swings_alike_by_both_methods() {
     let model = cantilever(12);
     let columns: Vec<String> = ["DZ(311,1)", "AX(311,1)", "VZ(305,1)", "FZ(100,1)"]
         .map(String::from)
         .to_vec();
     let explicit = run(&model, "DOP853", 1e-8, &columns);
-    // second order alone: BDF is as exact as it is asked to be, RADAU5 more so
-    for (method, error, bound) in [("RADAU5", 1e-7, 1e-5), ("BDF", 1e-5, 1e-2)] {
-        let implicit = run(&model, method, error, &columns);
-        for column in &columns {
-            let (a, b) = (values(&explicit, column), values(&implicit, column));
-            let size = a.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-            let off = a.iter().zip(b).map(|(a, b)| (a - b).abs());
-            let off = off.fold(0.0, f64::max) / size;
-            println!("{method} {column}: {off:.1e}");
-            assert!(off < bound, "{method} {column}: {off:.1e}");
-        }
+    let implicit = run(&model, "RADAU5", 1e-7, &columns);
+    for column in &columns {
+        let (a, b) = (values(&explicit, column), values(&implicit, column));
+        let size = a.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let off = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        let off = off.fold(0.0, f64::max) / size;
+        println!("{column}: {off:.1e}");
+        assert!(off < 1e-5, "{column}: {off:.1e}");
     }
 }
 

@@ -73,13 +73,7 @@ fn rows_of_four_bars_move_as_one_does() {
     let ([exact, ..], _) = place(1, ("AUTO", 1e-11));
     let largest = exact.iter().fold(0.0, |m: f64, y| m.max(y.abs()));
     let mut completed = 0;
-    for (method, requests) in [
-        ("AUTO", &[1e-2, 1e-4, 1e-8][..]),
-        ("RADAU5", &[1e-2, 1e-5]),
-        ("BDF", &[1e-2, 1e-4]),
-        ("HHT", &[1e-2, 1e-3]),
-        ("NEWMARK", &[1e-2]),
-    ] {
+    for (method, requests) in [("AUTO", &[1e-2, 1e-4, 1e-8][..]), ("RADAU5", &[1e-2, 1e-5])] {
         for &request in requests {
             let (found, status) = place(12, (method, request));
             if status != Status::Completed {
@@ -93,7 +87,7 @@ fn rows_of_four_bars_move_as_one_does() {
             }
         }
     }
-    assert!(completed >= 8, "{completed}");
+    assert_eq!(completed, 5);
 }
 
 #[test]

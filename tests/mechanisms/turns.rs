@@ -61,7 +61,7 @@ proptest! {
         steps in 1usize..12,
         reversed: bool,
         with_state: bool,
-        method in 0usize..4,
+        method in 0usize..3,
     ) {
         let [value, rate, second] = drive([a, b, c]);
         // the joint turns backward where its markers are exchanged
@@ -75,7 +75,7 @@ proptest! {
         let columns = ["AZ(20,1)", "AZ(1,20)", "AZ(21,1)", "SPDP(1,0,8,0)", "MOTION(1,0,8,0)"];
         let mut options = options(&columns, 1e-9);
         if with_state || level > 0 {
-            options.method = Some(["AUTO", "DOP853", "RADAU5", "BDF"][method].into());
+            options.method = Some(["AUTO", "DOP853", "RADAU5"][method].into());
         }
         let mut s = begin(model(&text), "driven", options);
         go(&mut s, Analysis::Dynamic, 2.0, steps);
@@ -102,7 +102,7 @@ proptest! {
         frequency in 0.0..3.0f64,
         steps in 1usize..8,
         reversed: bool,
-        method in 0usize..3,
+        method in 0usize..2,
     ) {
         let (i, j) = if reversed { (1, 20) } else { (20, 1) };
         let text = format!(
@@ -112,7 +112,7 @@ proptest! {
              SFORCE/1, ROTATION, I=20, J=1, FUNCTION={torque:?}*COS({frequency:?}*TIME)\n\
              DIFF/1, IC=0, FUNCTION=WZ(20,1)\n"
         );
-        let method = ["AUTO", "RADAU5", "BDF"][method];
+        let method = ["AUTO", "RADAU5"][method];
         let mut s = begin(model(&text), "turning", options_by(&["AZ(20,1)", "DIF(1)"], method, 1e-9));
         go(&mut s, Analysis::Dynamic, 30.0, steps);
         let (angles, integrals) = (values(&s, "AZ(20,1)"), values(&s, "DIF(1)"));

@@ -719,7 +719,7 @@ fn a_limit_of_steps_ends_with_its_code_and_keeps_what_there_is() {
          JOINT/1, REVOLUTE, I=3, J=1\nACCGRAV/JGRAV=-9.81\nEND\n",
     );
     let dir = adm.with_file_name("out");
-    for method in ["DOP853", "RADAU5", "BDF", "HHT", "AUTO"] {
+    for method in ["DOP853", "RADAU5", "AUTO"] {
         let ran = |limit: &str| {
             let args = [
                 "run",

@@ -102,7 +102,6 @@ impl Session {
             if settings.is_auto() {
                 settings.first = options::first_method(&mut part, left).into();
             }
-            session.prepare_implicit(&mut part, &mut settings);
             if !self.pace.columns_alone {
                 part.prepare_energy();
             }

@@ -268,15 +268,7 @@ fn downstream(system: &System, stop: &Stop, (stands, rates): (&[f64], &[f64])) -
 /// Returns the obstacle that a method met, and the name of the worst unknown or row.
 fn cause(system: &System, reason: Reason) -> (Cause, String) {
     let scene = &system.scene;
-    let mut names = scene.unknown_names();
-    // what a method for implicit equations sees after the unknowns
-    let multipliers = system.implicit_size().saturating_sub(names.len());
-    let rows = system.configuration.active_rows();
-    let rows: Vec<String> = rows
-        .map(|r| format!("multiplier of {}", row_name(&scene.rows[r])))
-        .collect();
-    names.extend(rows.iter().cycle().take(multipliers).cloned());
-    cause_among(system, reason, names)
+    cause_among(system, reason, scene.unknown_names())
 }
 
 /// Returns the obstacle that a method met, and the worst of the unknowns of these names.

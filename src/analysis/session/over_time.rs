@@ -153,7 +153,6 @@ impl Session {
             }
             .into();
         }
-        self.prepare_implicit(system, &mut settings);
         settings
     }
 
@@ -440,7 +439,6 @@ fn methods(trajectory: &Trajectory) -> String {
             Takeover::Begins => "",
             Takeover::Stiff => ", where steps were limited by stiffness",
             Takeover::Eased => ", where branches changed",
-            Takeover::Slides => ", where the motion stays where a function changes its branch",
         };
         text += &format!(", then {name} from {t}{why}");
     }
@@ -466,7 +464,7 @@ mod tests {
                 (0.0, "DOP853", Takeover::Begins),
                 (0.3, "RADAU5", Takeover::Stiff),
                 (0.5, "DOP853", Takeover::Eased),
-                (0.7, "RADAU5", Takeover::Slides),
+                (0.7, "RADAU5", Takeover::Stiff),
                 (0.9, "DOP853", Takeover::Eased),
             ];
             for (t, name, why) in all.into_iter().take(n) {

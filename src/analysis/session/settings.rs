@@ -1,10 +1,7 @@
 //! INTEGRATOR, overruled by the options of a session.
 
 use super::Session;
-use crate::analysis::system::System;
-use crate::analysis::system::implicit::Formulation;
 use crate::analysis::time::options::{self, Options};
-use crate::analysis::warning::RunWarning;
 use crate::diagnostic::{Diagnostic, counted};
 use crate::numeric;
 
@@ -140,30 +137,9 @@ impl Session {
             h_initial: i.hinit.map(|h| h * self.pace.steps),
             h_max: self.pace.longest_step(i.hmax.unwrap_or(f64::INFINITY)),
             h_min: i.hmin.unwrap_or(0.0),
-            max_order: i.kmax.map(|k| k as usize),
             max_newton: i.maxit.map(|k| k as usize),
             max_steps: self.options.max_steps.unwrap_or(usize::MAX),
             ..Options::default()
-        }
-    }
-
-    /// Records the equations as methods for implicit equations want them, if one is asked for.
-    pub(super) fn prepare_implicit(&mut self, system: &mut System, settings: &mut Options) {
-        if !numeric::is_implicit(&settings.method) {
-            return;
-        }
-        let asked = self.model.integrator.formulation.as_deref();
-        // with positions alone no error of a velocity is seen: where loops come near a singular
-        // position, energy would be lost without a word
-        let formulation = match asked {
-            Some("I3") => Formulation::Index3,
-            _ => Formulation::Stabilized,
-        };
-        if let Err(why) = system.make_implicit(formulation) {
-            for d in why {
-                self.warn(RunWarning::MethodReplaced(d));
-            }
-            settings.method = "RADAU5".into();
         }
     }
 }

@@ -42,7 +42,7 @@ impl MetStiffness {
         match why {
             Takeover::Stiff => self.is_stiff = true,
             // the stiffness was that of a branch
-            Takeover::Eased | Takeover::Slides => (self.limited, self.is_stiff) = (0, false),
+            Takeover::Eased => (self.limited, self.is_stiff) = (0, false),
             Takeover::Begins if name == "DOP853" => {
                 self.explicit_rate = rate;
                 let is_held_short = stats.at_edge as f64 > LEAST_SHARE * stats.steps as f64;

@@ -70,8 +70,7 @@ fn find_gap(jacobian: &[f64], n: usize) -> Result<(), Failure> {
 }
 
 impl System {
-    /// Takes over the derivatives and the implicit equations that a copy of this system has
-    /// recorded for the same rates.
+    /// Takes over the derivatives that a copy of this system has recorded for the same rates.
     pub(in crate::analysis) fn take_derivatives(&mut self, copy: &Self) {
         let (own, found) = (&mut self.recorded, &copy.recorded);
         if !own.rate.program.is_copy_of(&found.rate.program) {
@@ -84,9 +83,6 @@ impl System {
         }
         if own_ones.pattern.is_none() {
             own_ones.pattern.clone_from(&found_ones.pattern);
-        }
-        if own.implicit.is_none() {
-            own.implicit.clone_from(&found.implicit);
         }
     }
 

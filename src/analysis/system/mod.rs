@@ -22,7 +22,6 @@ pub mod closures;
 pub(super) mod downstream;
 pub(super) mod energy;
 pub mod external_inputs;
-pub mod implicit;
 mod jacobian;
 mod judged;
 mod loop_factors;
@@ -186,7 +185,7 @@ impl System {
         configuration.active = active;
         let q = &self.numbers[self.scene.layout.q()];
         let look = &mut || Ok(());
-        let (mut recorded, configuration) = Recorded::record(
+        let (recorded, configuration) = Recorded::record(
             &self.scene,
             configuration,
             q,
@@ -194,10 +193,6 @@ impl System {
             look,
             |r, c, _| Ok((r, c)),
         )?;
-        if let Some(implicit) = &self.recorded.implicit {
-            let here = self.scene.within(&configuration);
-            recorded.make_implicit(here, implicit.formulation())?;
-        }
         let before = std::mem::replace(&mut self.recorded, recorded);
         self.recorded.carry_on(before);
         self.configuration = configuration;

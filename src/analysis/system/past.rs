@@ -329,7 +329,6 @@ fn pieces(
         } else {
             method.interpolate(system, t, &mut state)?;
         }
-        // methods for implicit equations have multipliers behind it
         system.set(t, &state);
         let delays = &mut system.recorded.external.delays;
         for (delayed, piece) in delays.all.iter().zip(&mut pieces) {

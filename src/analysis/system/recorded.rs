@@ -11,7 +11,6 @@ use super::closures::Hook;
 use super::complaints;
 use super::downstream::DownstreamRates;
 use super::external_inputs::ExternalInputs;
-use super::implicit::{Formulation, Implicit};
 use super::jacobian::Derivatives;
 use super::peaks::Peaks;
 use super::pulses::Pulses;
@@ -60,8 +59,6 @@ pub(in crate::analysis) struct Recorded {
     pub thickness: ThicknessBounds,
     /// derivatives of the rates
     pub(super) derivatives: Derivatives,
-    /// the same as an implicit system, when a method asks for it
-    pub implicit: Option<Box<Implicit>>,
     /// values of the past, results of closures
     pub external: ExternalInputs,
     /// expressions that are watched
@@ -132,7 +129,6 @@ impl Recorded {
             loops,
             thickness,
             derivatives: Derivatives::default(),
-            implicit: None,
             external,
             sensors,
             samples,
@@ -140,22 +136,6 @@ impl Recorded {
             peaks,
         };
         then(recorded, configuration, &recorder)
-    }
-
-    /// Records the implicit equations, too.
-    ///
-    /// # Errors
-    /// Functions that read what is solved for.
-    pub fn make_implicit(
-        &mut self,
-        scene: Configured<'_>,
-        formulation: Formulation,
-    ) -> Result<(), Vec<Diagnostic>> {
-        let switching = self.branches.switching.as_ref();
-        let closures = &self.external.closures;
-        let implicit = Implicit::new(scene, formulation, (closures, switching))?;
-        self.implicit = Some(Box::new(implicit));
-        Ok(())
     }
 
     /// Goes on from what the programs of other rows have seen so far.

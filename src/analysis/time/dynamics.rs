@@ -10,7 +10,7 @@ use crate::analysis::time::leg::{Finished, Leg, Limits};
 use crate::analysis::time::options::Options;
 use crate::analysis::trajectory::{Ended, Takeover, Trajectory};
 use crate::analysis::watch::Watch;
-use crate::numeric::{self, Memory, Method, Ode, Reason, Stop};
+use crate::numeric::{Memory, Method, Ode, Reason, Stop};
 use crate::scene::layout::Layout;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -104,7 +104,6 @@ impl<'a> Course<'a> {
                 self.returns += 1;
                 ("DOP853".into(), Takeover::Eased)
             }
-            Finished::Slides => ("RADAU5".into(), Takeover::Slides),
         };
         Ok(())
     }
@@ -172,12 +171,9 @@ fn go(
     let mut outputs = [&out.t[..], outputs].concat();
     let landings = system.landings(t0, end);
     let mut course = Course::new(options, n);
-    if !numeric::is_implicit(&course.name) {
-        system.expect_outputs(outputs.len() - first, false);
-    }
+    system.expect_outputs(outputs.len() - first, false);
     let mut t = t0;
     loop {
-        // the method, and its state: that of an implicit one has multipliers, found anew
         let attempted = out.stats.steps + out.stats.rejected;
         let max_steps = options.max_steps.saturating_sub(attempted);
         let limited = (end - t0, max_steps);
@@ -186,9 +182,6 @@ fn go(
             return;
         };
         out.begin_method(t, &course.name, course.why);
-        let implicit = numeric::is_implicit(&course.name);
-        y.resize(n.max(system.implicit_size()), 0.0);
-        let state = if implicit { &y[..] } else { &y[..n] };
         // steps, as far as it goes
         let limits = Limits {
             start: t,
@@ -198,12 +191,11 @@ fn go(
             memory: course.memory(),
             may_change: course.may_change(),
             returns_after: course.returns_after(),
-            may_slide: !implicit,
             may_part: options.may_part,
         };
-        let beside = (downstream.as_deref_mut(), state.len());
+        let beside = (downstream.as_deref_mut(), y.len());
         let mut leg = Leg::new(system, watch, limits, (out, &mut outputs), beside);
-        let finished = leg.run(method.as_mut(), state);
+        let finished = leg.run(method.as_mut(), &y);
         out.add_cost(method.stats());
         system.branches_mut().release();
         // another method, or other rows
@@ -212,7 +204,6 @@ fn go(
             out.left = memory.map(|memory| (course.name, Arc::new(memory)));
             return;
         };
-        y.truncate(n);
         y.copy_from_slice(match &finished {
             Finished::Rows(state) => &state[..n],
             _ => &method.y()[..n],

@@ -56,8 +56,6 @@ pub(super) enum Finished {
     Stiff,
     /// branches have changed: what was stiff may be so no longer
     Eased,
-    /// the motion stays where a branch changes, which the method does not know how to do
-    Slides,
     /// other rows are to be kept from here, or the state has been put onto all of them
     Rows(Vec<f64>),
     /// mechanisms that nothing couples would do better each by itself
@@ -86,8 +84,6 @@ pub(super) struct Limits<'a> {
     pub may_change: bool,
     /// changes of branches after which the method before may try again; zero: never
     pub returns_after: usize,
-    /// whether the method can follow a motion that stays where a branch changes
-    pub may_slide: bool,
     /// whether mechanisms that nothing couples may go on each by itself
     pub may_part: bool,
 }
@@ -287,9 +283,6 @@ impl<'a> Leg<'a> {
         }
         if self.watch.interrupted() {
             return Err(Finished::Ended(Ended::Interrupted));
-        }
-        if self.switches.slide() && !self.limits.may_slide {
-            return Err(Finished::Slides);
         }
         Ok(())
     }

@@ -48,14 +48,13 @@ impl Leg<'_> {
     }
 
     /// Returns whether a step leads to another branch that only comes near the present one, or to
-    /// a position where branches meet, from which rounding would choose one. Methods that evaluate
-    /// rates notice where rows are, or between evaluations may have been, nearly dependent; after a
-    /// step of another method it is always looked for.
+    /// a position where branches meet, from which rounding would choose one. Evaluations of rates
+    /// notice where rows are, or between them may have been, nearly dependent.
     pub(super) fn leaves_branch(&mut self, method: &mut dyn Method<System>, step: &Step) -> bool {
         if self.before.is_empty() {
             return false;
         }
-        let near = !self.limits.may_slide || self.system.was_near_dependence();
+        let near = self.system.was_near_dependence();
         if !near && self.system.fastest_angle(method.y(), |_| true) * step.h <= LONG_TURN {
             return false;
         }

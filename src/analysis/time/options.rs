@@ -32,8 +32,6 @@ pub struct Options {
     pub h_max: f64,
     /// shortest step
     pub h_min: f64,
-    /// highest order
-    pub max_order: Option<usize>,
     /// Newton iterations
     pub max_newton: Option<usize>,
     /// attempted steps, by all methods together
@@ -54,7 +52,6 @@ impl Default for Options {
             left: None,
             h_max: f64::INFINITY,
             h_min: 0.0,
-            max_order: None,
             max_newton: None,
             max_steps: usize::MAX,
             may_part: false,
@@ -85,7 +82,6 @@ impl Options {
             h_initial: self.h_initial,
             h_max: self.h_max,
             h_min: self.h_min.max(SHORTEST_STEP * duration),
-            max_order: self.max_order.unwrap_or(5),
             max_newton: self.max_newton.unwrap_or(10),
             max_steps,
             ..numeric::Options::default()
@@ -102,16 +98,15 @@ impl Options {
     ) -> Option<Box<dyn Method<System>>> {
         let settings = self.settings(duration, max_steps);
         numeric::ode_method::<System>(name, Ode::size(system), &settings)
-            .or_else(|| numeric::dae_method::<System>(name, system.implicit_size(), &settings))
     }
 }
 
 /// Returns the name of the method that does what an INTEGRATOR name of Adams asks for; names of
 /// our own stay as they are.
 ///
-/// GSTIFF, WSTIFF and their kin are backward differentiation of low order. They are taken for
-/// stiff systems with modest requests, which RADAU5 solves with fewer steps and without their
-/// damping (BDF is there by its own name). ABAM and RKF45 are explicit.
+/// GSTIFF, WSTIFF and their kin are backward differentiation of low order, HHT and NEWMARK of order
+/// two. They are taken for stiff systems with modest requests, which RADAU5 solves with fewer
+/// steps, and without taking energy from what moves slowly. ABAM and RKF45 are explicit.
 pub fn method_named(name: &str) -> String {
     let name = name.to_ascii_uppercase();
     let ours = METHODS_OF_ADAMS
@@ -122,7 +117,18 @@ pub fn method_named(name: &str) -> String {
 
 /// Methods of ours, and the names of Adams that they do the work of.
 pub const METHODS_OF_ADAMS: [(&str, &[&str]); 2] = [
-    ("RADAU5", &["GSTIFF", "WSTIFF", "HASTIFF", "CONSTANT_BDF"]),
+    (
+        "RADAU5",
+        &[
+            "GSTIFF",
+            "WSTIFF",
+            "HASTIFF",
+            "CONSTANT_BDF",
+            "HHT",
+            "NEWMARK",
+            "BDF",
+        ],
+    ),
     ("DOP853", &["ABAM", "RKF45"]),
 ];
 

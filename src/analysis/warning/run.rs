@@ -53,8 +53,6 @@ pub enum RunWarning {
         /// times, and by how much
         jumps: Vec<(f64, f64)>,
     },
-    /// a method cannot take the model, for this reason; RADAU5 takes its place
-    MethodReplaced(Diagnostic),
     /// a column has no value at any time
     EmptyColumn(Unsupported),
     /// a column has no value at some time
@@ -190,7 +188,6 @@ impl RunWarning {
             RunWarning::ContactsWithoutFreedom(_) | RunWarning::RateAtRest { .. } => "no_effect",
             RunWarning::NothingToSimulate { .. } => "nothing_to_simulate",
             RunWarning::MotionJumps { .. } => "motion_jumps",
-            RunWarning::MethodReplaced(_) => "method",
             RunWarning::EmptyColumn(_) => "unavailable",
             RunWarning::Gap { .. } => "no_finite_value",
             RunWarning::Rank(_) => "rank_change",
@@ -215,7 +212,7 @@ impl RunWarning {
             RunWarning::MotionJumps { motion, .. } | RunWarning::RateAtRest { motion } => {
                 Some(ElementKind::Motion.id(*motion).into())
             }
-            RunWarning::MethodReplaced(d) | RunWarning::LockedWithoutMotions(d) => d.subject(),
+            RunWarning::LockedWithoutMotions(d) => d.subject(),
             RunWarning::ContactsWithoutFreedom(contacts) => contacts.first().map(|&id| id.into()),
             RunWarning::EmptyColumn(unsupported) => Some((&unsupported.asked_by).into()),
             RunWarning::Gap { column, .. } => Some(column.as_str().into()),
@@ -270,10 +267,6 @@ impl RunWarning {
                 jumps: all,
                 ..
             } => format!(": {}; {}", jumps(*quantity, all), after_jump(*quantity)),
-            RunWarning::MethodReplaced(d) => {
-                let colon = if d.element.is_some() { ": " } else { "" };
-                format!("{colon}{}: RADAU5 takes its place", d.message)
-            }
             RunWarning::EmptyColumn(unsupported) => format!(": {}", unsupported.lack),
             RunWarning::Gap { at, .. } => format!(" has no finite value at time {at}"),
             RunWarning::Rank(change) => of_rank(change),

@@ -383,13 +383,13 @@ mod tests {
 
     #[test]
     fn a_method_that_cannot_reach_what_is_wanted_is_left_out_by_name() {
-        // of order two: a decade costs three times at least, here ten times
+        // of order five: a decade costs 1.6 times at least, here 1.8 times
         let slow = Series {
-            times: vec![(1e-2, 0.2), (1e-3, 2.0)],
+            times: vec![(1e-2, 5.0), (1e-3, 9.0)],
             next: 2,
-            ..series("HHT")
+            ..series("RADAU5")
         };
-        assert!(slow.expected(1e-6)[0] > 60.0 && slow.expected(1e-4)[1] < 25.0);
+        assert!(slow.expected(1e-6)[0] > 30.0 && slow.expected(1e-4)[1] < 30.0);
         let model = Model::default();
         let question = Question {
             name: String::new(),
@@ -417,7 +417,7 @@ mod tests {
         let [left] = study.left_out.as_slice() else {
             panic!("{:?}", study.left_out);
         };
-        assert_eq!((left.method.as_str(), left.requests.len()), ("HHT", 3));
+        assert_eq!((left.method.as_str(), left.requests.len()), ("RADAU5", 3));
         assert!(left.why.to_string().contains("1e-6"), "{}", left.why);
     }
 

@@ -295,21 +295,26 @@ mod tests {
                 row("DOP853", 1e-9, error(0.0), 1e-1),
                 row("RADAU5", 1e-3, error(1e-4), 2e-3),
                 row(
-                    "HHT",
+                    "RADAU5",
                     1e-3,
                     Outcome::Ended(Status::Stopped, "it, \"failed\"".into()),
                     0.0,
                 ),
                 row(
-                    "HHT",
+                    "RADAU5",
                     1e-4,
                     Outcome::Ended(Status::Stopped, "stopped at time 1: why".into()),
                     0.0,
                 ),
-                row("BDF", 1e-3, Outcome::Refused("no <such> thing".into()), 0.0),
+                row(
+                    "AUTO",
+                    1e-3,
+                    Outcome::Refused("no <such> thing".into()),
+                    0.0,
+                ),
             ],
             left_out: vec![LeftOut {
-                method: "HHT".into(),
+                method: "RADAU5".into(),
                 requests: vec![1e-6],
                 why: Reason::Budget {
                     to: 1e-6,
@@ -331,7 +336,7 @@ mod tests {
             "stopped: it, \"failed\"",
             "  stopped at time 1: why",
             "refused: no",
-            "left out: HHT at 1e-6",
+            "left out: RADAU5 at 1e-6",
         ] {
             assert!(text.contains(part), "{part}:\n{text}");
         }

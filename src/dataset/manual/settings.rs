@@ -5,6 +5,9 @@ use super::{Effect, Note, Page, f, k, n};
 const PATTERN: Note = k("PATTERN", "When matrices are made anew; that is found out.");
 const LIST: Note = k("LIST", "Would print the settings.");
 const METHOD: &str = "A stiff method: RADAU5 takes its place.";
+const SECOND: &str =
+    "A stiff method of order 2: RADAU5, of order 5, takes its place, which is told.";
+const LEVELS: &str = "What a formulation holds; RADAU5 always holds positions and velocities.";
 const EXPLICIT: &str = "A method for what is not stiff: DOP853 takes its place.";
 const LIMITED: &str = "Iterations are limited by what they reach.";
 
@@ -13,31 +16,31 @@ pub(super) static PAGES: &[Page] = &[
     Page {
         keyword: "INTEGRATOR",
         summary: "The method of integration and its errors.",
-        text: "Without a method the program chooses (AUTO). The names of Adams stand for methods of the same kind; `run --method` takes DOP853, RADAU5, BDF, HHT, NEWMARK and AUTO. docs/methods.md says which to take.",
+        text: "Without a method the program chooses (AUTO). The names of Adams stand for methods of the same kind; `run --method` takes DOP853, RADAU5 and AUTO. docs/methods.md says which to take.",
         equation: "INTEGRATOR/ERROR=1E-6",
         effect: Effect::Solved,
         notes: &[
             f("GSTIFF", METHOD),
             f("WSTIFF", METHOD),
             f("HASTIFF", METHOD),
-            f("HHT", "Generalized alpha with damping of high frequencies, order 2."),
-            f("NEWMARK", "Generalized alpha without damping, order 2."),
+            f("HHT", SECOND),
+            f("NEWMARK", SECOND),
             f("ABAM", EXPLICIT),
             f("RKF45", EXPLICIT),
             k("DSTIFF", "There is no such method here, which is told."),
             f("CONSTANT_BDF", METHOD),
-            f("I3", "BDF, HHT, NEWMARK: positions alone are held."),
-            f("SI2", "BDF, HHT, NEWMARK: positions and velocities are held."),
-            f("SI1", "BDF, HHT, NEWMARK: positions and velocities are held."),
+            k("I3", LEVELS),
+            k("SI2", LEVELS),
+            k("SI1", LEVELS),
             n("ERROR", "relative", "1E-6", "Permitted local error, relative to the magnitude of each unknown."),
             n("HMAX", "time", "no limit", "Longest step."),
             n("HMIN", "time", "0", "Shortest step."),
             n("HINIT", "time", "chosen", "First step."),
-            n("KMAX", "", "of the method", "Largest order."),
+            k("KMAX", "The methods have a fixed order, which is told."),
             n("MAXIT", "", "of the method", "Most iterations in a step."),
-            k("ALPHA", "HHT: damping; it is -0.3."),
-            k("BETA", "NEWMARK: it is that of the average acceleration."),
-            k("GAMMA", "NEWMARK: it is that of the average acceleration."),
+            k("ALPHA", "Damping of HHT."),
+            k("BETA", "A parameter of NEWMARK."),
+            k("GAMMA", "A parameter of NEWMARK."),
             PATTERN,
             k("CORRECTOR", "Test of the corrector's convergence."),
             k("INTERPOLATE", "Outputs are always interpolated."),

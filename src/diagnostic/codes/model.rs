@@ -583,7 +583,7 @@ They belong to the methods, the prints and the files of other solvers: patterns 
 log shows. They are kept where a dataset is written again. What the file asks for is computed without them, so results may
 differ from those of a program that obeys them.
 
-    INTEGRATOR/HHT, ALPHA=-0.2     HHT has its own damping
+    INTEGRATOR/HHT, ALPHA=-0.2     RADAU5 does the work of HHT, and has its own damping
     EQUILIBRIUM/DYNAMICS           equilibria are found by a damped descent and Newton's iteration
     MREQUEST/1, FORCE, JOINTS=ALL  the results have all forces where RESULTS/XRF asks for them
     INFO/JOINT, ID=3               `cognate explain` shows a model
@@ -753,15 +753,6 @@ KINEMATIC computes motion from constraints alone. Drive the remaining freedoms b
 The message names the function or column; the run goes on without it where that is possible.
 
     cognate run model.acf --column 'ACCX(20)'     in statics there is no acceleration",
-    },
-    Code {
-        name: "implicit_loop",
-        summary: "a function that methods for implicit equations cannot take",
-        explanation: "\
-BDF, HHT and the like need derivatives of all equations. Functions that read accelerations or forces which depend on
-them have none: choose an explicit method or RADAU5.
-
-    cognate run model.acf --method RADAU5",
     },
     Code {
         name: "bad_extension",

@@ -256,15 +256,14 @@ along an orbit even as the square of time; where a small push decides what happe
 has measured it: the column is off by about as much as the sentence says. Ask for a smaller ERROR; where a number is wanted that depends
 on such a motion, take one that does not: a mean, an amplitude, a number of turns.
 
-    cognate run model.acf --error 1e-9   instead of 1e-6
-    cognate run model.acf --method AUTO  instead of HHT",
+    cognate run model.acf --error 1e-9   instead of 1e-6",
     },
     Code {
         name: "stiff",
         summary: "stability, not accuracy, sets the steps of an explicit method",
         explanation: "\
 A fast motion that has died away still keeps the steps of an explicit method short. The results are as exact as was asked for.
-RADAU5, BDF and HHT take steps as long as the slow motion permits; AUTO changes to RADAU5 where that pays.
+RADAU5 takes steps as long as the slow motion permits; AUTO changes to RADAU5 where that pays.
 
     cognate run model.acf --method RADAU5",
     },

@@ -25,17 +25,28 @@ pub(super) fn arguments_are_read(model: &Model, out: &mut Out) {
     damping(model, out);
     data(model, out);
     grounds(model, out);
-    if let Some(kmax) = model.integrator.kmax
-        && model.integrator.method.as_deref() != Some("BDF")
-    {
+    integrator(model, out);
+}
+
+/// The methods have orders and damping of their own.
+fn integrator(model: &Model, out: &mut Out) {
+    let mut note = |message: String| {
         let note = Diagnostic {
             severity: crate::diagnostic::Severity::Note,
-            ..Diagnostic::warning(
-                "ignored",
-                format!("KMAX = {kmax} is read by --method BDF alone"),
-            )
+            ..Diagnostic::warning("ignored", message)
         };
         out.push(note.element("INTEGRATOR"));
+    };
+    let asked = &model.integrator;
+    if let Some(kmax) = asked.kmax {
+        note(format!(
+            "KMAX = {kmax} changes nothing: the methods have a fixed order"
+        ));
+    }
+    if let Some(method @ ("HHT" | "NEWMARK")) = asked.method.as_deref() {
+        note(format!(
+            "{method} is done by RADAU5, of order 5 instead of 2: it damps what is too fast to follow, and takes no energy from the rest"
+        ));
     }
 }
 

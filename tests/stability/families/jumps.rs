@@ -87,7 +87,7 @@ pub fn jumps() -> Vec<Scene> {
                 1e-8,
             ),
     );
-    for method in ["DOP853", "RADAU5", "BDF"] {
+    for method in ["DOP853", "RADAU5"] {
         let text = "DIFF/1, IC=0, FUNCTION=ABS(COS(TIME))\n";
         all.push(
             scene(f, "a rectified cosine", text)

@@ -36,11 +36,13 @@ pub fn no_value() -> Vec<Scene> {
         .end(2.0)
         .ends("DIFF/1"),
     ];
-    for method in ["RADAU5", "BDF", "HHT", "NEWMARK"] {
-        for error in [1e-4, 1e-3, 1e-2, 1e-1] {
-            for (name, function) in [("a pole", "1/(TIME-0.5)"), ("a tangent", "TAN(PI*TIME)")] {
-                all.push(one(name, function, "SFORCE/1").method(method).error(error));
-            }
+    for error in [1e-4, 1e-3, 1e-2, 1e-1] {
+        for (name, function) in [("a pole", "1/(TIME-0.5)"), ("a tangent", "TAN(PI*TIME)")] {
+            all.push(
+                one(name, function, "SFORCE/1")
+                    .method("RADAU5")
+                    .error(error),
+            );
         }
     }
     all

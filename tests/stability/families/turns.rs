@@ -43,15 +43,13 @@ pub fn turns() -> Vec<Scene> {
             .follows("AZ(20,1)", |t| 100.0 * t.sin(), 1e-4),
         );
     }
-    for method in ["RADAU5", "BDF"] {
-        all.push(
-            scene(f, "coasting at 50 rad/s", rotor(1.0, 50.0))
-                .method(method)
-                .end(10.0)
-                .steps(2)
-                .follows("AZ(20,1)", |t| 50.0 * t, 1e-2),
-        );
-    }
+    all.push(
+        scene(f, "coasting at 50 rad/s", rotor(1.0, 50.0))
+            .method("RADAU5")
+            .end(10.0)
+            .steps(2)
+            .follows("AZ(20,1)", |t| 50.0 * t, 1e-2),
+    );
     // an IF that reads turns: the torque is switched off after ten turns
     all.push(
         scene(
