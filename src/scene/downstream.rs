@@ -158,7 +158,7 @@ fn is_calm(scene: &Scene, formula: &Formula) -> bool {
     let may_peak = formula.program.may_peak();
     recorder.switching(&outputs).is_empty()
         && recorder.timed(&outputs, Input::Time).breaks.is_empty()
-        && (!may_peak || recorder.peaks(&outputs).logarithms.is_empty())
+        && (!may_peak || recorder.peaks(&outputs).is_empty())
 }
 
 /// Returns whether a formula is read by whoever asks for it, and not only by those who read its

@@ -136,7 +136,7 @@ fn off(
     (last(&s, column) - 1.0).abs()
 }
 
-/// A bump of half a width `w` around a place on x, and its integral over x, of one of six shapes.
+/// A bump of half a width `w` around a place on x, and its integral over x, of one of nine shapes; the last has two.
 fn bump(shape: usize, a: f64, w: f64) -> (String, f64) {
     use std::f64::consts::PI;
     let x = format!("(DX(2,1)-({a:?}))");
@@ -150,7 +150,17 @@ fn bump(shape: usize, a: f64, w: f64) -> (String, f64) {
         2 => (sides("HAVSIN"), w),
         3 => (format!("MAX(0,1-({x}/{w:?})**2)"), 4.0 / 3.0 * w),
         4 => (format!("MAX(0,1-ABS({x}/{w:?}))"), w),
-        _ => (format!("EXP(-({x}/{w:?})**2)"), PI.sqrt() * w),
+        5 => (format!("EXP(-({x}/{w:?})**2)"), PI.sqrt() * w),
+        6 => (format!("1/(1+({x}/{w:?})**4)"), PI / 2f64.sqrt() * w),
+        7 => {
+            let flank = |at: f64| format!("TANH(({x}+({at:?}))/{:?})", 0.1 * w);
+            (format!("0.5*({}-{})", flank(w), flank(-w)), 2.0 * w)
+        }
+        _ => {
+            let further = 20.0 * w;
+            let both = format!("EXP(-({x}/{w:?})**2)+EXP(-(({x}-{further:?})/{w:?})**2)");
+            (format!("({both})"), 2.0 * PI.sqrt() * w)
+        }
     }
 }
 
@@ -212,7 +222,7 @@ proptest! {
     #[test]
     fn a_narrow_bump_acts_with_all_of_its_impulse(
         way in way(),
-        shape in 0usize..6,
+        shape in 0usize..9,
         door in 0usize..3,
         at in 0.2f64..0.8,
         decades in -5.0f64..-2.0,

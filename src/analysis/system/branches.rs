@@ -5,16 +5,16 @@
 //! at which the motion stays meanwhile.
 
 use super::algebraic_loops::AlgebraicLoops;
+use super::bounds::{Bounded, Bounds, Watched};
 use super::sliding::Slides;
-use crate::expr::program::{Program, Share, Work};
+use crate::expr::program::{Program, Work};
 use crate::model::Level;
-use crate::scalar::{Dual, Interval, Scalar};
+use crate::scalar::{Interval, Scalar};
 use crate::scene::equations::Unsupported;
 use crate::scene::layout::{Layout, LongRow};
 use crate::scene::programs::{self, Switching};
 use crate::scene::recorder::Recorder;
 use crate::scene::{Scene, Source};
-use std::collections::BTreeMap;
 
 /// Angle by which an angle that decides a branch may turn within a step: a quarter of a turn, in
 /// which a step is looked at several times.
@@ -51,11 +51,8 @@ pub struct Branches {
     is_aside: bool,
     /// values of the switches at a look aside   (n_switches)
     values_aside: Vec<f64>,
-    /// the row, with bounds of what moves and of its rates
-    bounded_row: Vec<Dual<1, Interval>>,
-    bound_work: Work<Dual<1, Interval>>,
-    /// what single switches that bounds of all have not decided need of the program
-    shares: BTreeMap<usize, Share>,
+    /// the program of the switches over bounds
+    bounds: Bounded,
 }
 
 impl Branches {
@@ -90,9 +87,7 @@ impl Branches {
             numbers_of_steps: Vec::new(),
             is_aside: false,
             values_aside: vec![0.0; n],
-            bounded_row: Vec::new(),
-            bound_work: Work::default(),
-            shares: BTreeMap::new(),
+            bounds: Bounded::default(),
         })
     }
 
@@ -266,113 +261,6 @@ impl Branches {
         (is_finite && strength.is_finite()).then_some(strength)
     }
 
-    /// Evaluates the switching functions, the branches of others held where branches are held
-    /// (n_switches)
-    pub(super) fn values(&mut self, numbers: &[f64], values: &mut [f64]) {
-        self.put(numbers);
-        let solved = self.holding && self.solve_held().is_ok();
-        let Some(switching) = &self.switching else {
-            return;
-        };
-        if let (Some(unknowns), false) = (&switching.unknowns, solved) {
-            let places = self.row.more();
-            let (work, unknown) = (&mut self.unknown_work, &mut self.numbers[places]);
-            unknowns.run(numbers, work, unknown);
-        }
-        let work = &mut self.switch_work;
-        switching.switches.run(&self.numbers, work, values);
-        if self.is_sliding() {
-            self.sliding_values(numbers, values);
-        }
-    }
-
-    /// Returns which switching functions can be bounded, and the unknowns that these read, those of
-    /// loops after those of the method: nothing bounds values of the past or closures.
-    pub(super) fn bounded(&self) -> (Vec<usize>, Vec<usize>) {
-        let Some(Switching { switches, .. }) = &self.switching else {
-            return Default::default();
-        };
-        let layout = self.row.numbers;
-        let unbound: Vec<usize> = (layout.downstream())
-            .chain(layout.loops())
-            .chain(layout.external())
-            .collect();
-        let unbound = switches.outputs_reading(&unbound);
-        let bounded: Vec<usize> = (0..unbound.len()).filter(|&k| !unbound[k]).collect();
-        let read = |&k: &usize| !bounded.is_empty() && switches.reads(self.unknown_at(k));
-        let unknowns = (0..layout.n_y() + self.row.n_more).filter(read).collect();
-        (bounded, unknowns)
-    }
-
-    /// Returns the place in the row of an unknown of the method, or of a loop.
-    fn unknown_at(&self, k: usize) -> usize {
-        match k.checked_sub(self.row.numbers.n_y()) {
-            Some(k) => self.row.more().start + k,
-            None => self.row.numbers.y_at(k),
-        }
-    }
-
-    /// Returns the unknowns of loops at the last look at the switches.
-    pub(super) fn loop_unknowns(&self) -> &[f64] {
-        self.numbers.get(self.row.more()).unwrap_or(&[])
-    }
-
-    /// Takes bounds of the time and of the unknowns that [`bounded`](Self::bounded) names, with
-    /// their rates; branches are held as they are.
-    pub(super) fn take_bounds(
-        &mut self,
-        numbers: &[f64],
-        time: Interval,
-        unknowns: impl Iterator<Item = (usize, [Interval; 2])>,
-    ) {
-        let mut row = std::mem::take(&mut self.bounded_row);
-        row.resize(self.row.len(), Dual::constant(f64::NAN));
-        row[Layout::TIME] = Dual::variable(time, 0);
-        for (k, [re, rate]) in unknowns {
-            row[self.unknown_at(k)] = Dual { re, eps: [rate] };
-        }
-        // no other numbers are read by what is bounded
-        for k in self.row.numbers.turns() {
-            row[k] = Dual::constant(numbers[k]);
-        }
-        for (row, &side) in row[self.row.sides()].iter_mut().zip(&self.sides) {
-            *row = Dual::constant(side);
-        }
-        self.bounded_row = row;
-    }
-
-    /// Bounds all switching functions and their rates, over what bounds were taken last
-    /// (n_switches)
-    pub(super) fn bound(&mut self, bounds: &mut [Dual<1, Interval>]) {
-        if let Some(Switching { switches, .. }) = &self.switching {
-            switches.eval(&self.bounded_row, &mut self.bound_work, bounds);
-        }
-    }
-
-    /// Bounds one switching function and its rate as [`bound`](Self::bound) does.
-    pub(super) fn bound_one(&mut self, k: usize) -> Dual<1, Interval> {
-        let Some(Switching { switches, .. }) = &self.switching else {
-            return Dual::constant(f64::NAN);
-        };
-        let share = share_of(&mut self.shares, switches, k);
-        switches.eval_share(share, &self.bounded_row, &mut self.bound_work)
-    }
-
-    /// Returns which unknowns of [`bounded`](Self::bounded) one switching function reads.
-    pub(super) fn unknowns_of(&mut self, k: usize) -> Vec<usize> {
-        let Some(Switching { switches, .. }) = &self.switching else {
-            return Vec::new();
-        };
-        let (y, more) = (self.row.numbers.y(), self.row.more());
-        let places = share_of(&mut self.shares, switches, k).places();
-        let unknown = |place: usize| match place {
-            _ if y.contains(&place) => Some(place - y.start),
-            _ if more.contains(&place) => Some(y.len() + place - more.start),
-            _ => None,
-        };
-        places.filter_map(unknown).collect()
-    }
-
     /// Returns whether the numbers say the same branches as are held.
     pub(super) fn are_held_at(&mut self, numbers: &[f64]) -> bool {
         let mut values = std::mem::take(&mut self.values_aside);
@@ -397,10 +285,66 @@ impl Branches {
     }
 }
 
-/// Returns what a switching function needs of the program of all.
-fn share_of<'s>(shares: &'s mut BTreeMap<usize, Share>, switches: &Program, k: usize) -> &'s Share {
-    let share = shares.entry(k);
-    share.or_insert_with(|| switches.share::<Dual<1, Interval>>(k))
+impl Watched for Branches {
+    fn bounded(&self) -> (Vec<usize>, Vec<usize>) {
+        match &self.switching {
+            Some(Switching { switches, .. }) => Bounded::of(switches, self.row),
+            None => Default::default(),
+        }
+    }
+
+    /// Evaluates the switching functions, the branches of others held where branches are held.
+    fn values(&mut self, numbers: &[f64], values: &mut [f64]) {
+        self.put(numbers);
+        let solved = self.holding && self.solve_held().is_ok();
+        let Some(switching) = &self.switching else {
+            return;
+        };
+        if let (Some(unknowns), false) = (&switching.unknowns, solved) {
+            let places = self.row.more();
+            let (work, unknown) = (&mut self.unknown_work, &mut self.numbers[places]);
+            unknowns.run(numbers, work, unknown);
+        }
+        let work = &mut self.switch_work;
+        switching.switches.run(&self.numbers, work, values);
+        if self.is_sliding() {
+            self.sliding_values(numbers, values);
+        }
+    }
+
+    fn loop_unknowns(&self) -> &[f64] {
+        self.numbers.get(self.row.more()).unwrap_or(&[])
+    }
+
+    fn take_bounds(
+        &mut self,
+        numbers: &[f64],
+        time: Interval,
+        unknowns: &mut dyn Iterator<Item = (usize, [Interval; 2])>,
+    ) {
+        let read = (numbers, &self.sides[..]);
+        self.bounds.take(self.row, read, time, unknowns);
+    }
+
+    fn bound(&mut self, bounds: &mut [Bounds]) {
+        if let Some(Switching { switches, .. }) = &self.switching {
+            self.bounds.all(switches, bounds);
+        }
+    }
+
+    fn bound_one(&mut self, k: usize) -> Bounds {
+        match &self.switching {
+            Some(Switching { switches, .. }) => self.bounds.one(switches, k),
+            None => Bounds::constant(f64::NAN),
+        }
+    }
+
+    fn unknowns_of(&mut self, k: usize) -> Vec<usize> {
+        match &self.switching {
+            Some(Switching { switches, .. }) => self.bounds.unknowns_of(switches, self.row, k),
+            None => Vec::new(),
+        }
+    }
 }
 
 /// Runs the program of the rates with branches held; false where there is none.

@@ -13,7 +13,6 @@
 use super::System;
 use super::branches::Branches;
 use super::complaints;
-use super::pulses::Pulses;
 use super::recording::Recording;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
@@ -80,8 +79,6 @@ pub(in crate::analysis) struct DownstreamRates {
     reads_mechanism: bool,
     /// entries of ∂g/∂x, whichever branches are held
     pattern: Arc<Pattern>,
-    /// pulses of functions of time among them
-    pub pulses: Pulses,
     /// x, then what was read
     inputs: Vec<f64>,
     work: Work<Dual<WIDTH>>,
@@ -118,7 +115,6 @@ impl DownstreamRates {
             pattern: Arc::new(Pattern::of_rows(layout.n_downstream, &rows)),
             parts: Parts::new(&rates, &layout),
             held: held.map(|held| Parts::new(&held, &layout)),
-            pulses: Pulses::downstream(recorder.scene())?,
             inputs: Vec::new(),
             work: Work::default(),
             duals: Vec::new(),

@@ -6,16 +6,16 @@
 //! ```text
 //! recorded     the programs of a configuration: rate, rows, branches, loops, turns; remade as a whole
 //! ode          ẏ = f(t, y), projection; jacobian: its derivatives
-//! implicit     F(t, y, ẏ) = 0
 //! downstream   ẋ = g(t, y, x) of what reads the mechanism and is not read by it
 //! numbers      of an instant, from time and state; speeds, accepted: what is asked of them
 //! external_inputs (past, closures), sensors, samples     numbers that programs read but do not compute
-//! pulses, peaks, time_events, clocks, tunnelling, singular_step     how long a step may be
+//! peaks, time_events, clocks, tunnelling, singular_step     how long a step may be
 //! ```
 
 mod accepted;
 mod algebraic_loops;
 mod aside;
+pub(super) mod bounds;
 pub mod branches;
 mod clocks;
 pub mod closures;
@@ -29,7 +29,6 @@ mod numbers;
 mod ode;
 pub mod past;
 pub(super) mod peaks;
-mod pulses;
 mod recorded;
 mod recording;
 mod rows;
@@ -47,7 +46,6 @@ use crate::analysis::look;
 use crate::diagnostic::{Diagnostic, Error};
 use crate::expr::program::Program;
 use crate::numeric::Ode;
-use crate::scalar::{Dual, Interval};
 use crate::scene::Scene;
 use crate::scene::broken::{Broken, broken};
 use crate::scene::configuration::{Configuration, Configured, Elimination};
@@ -56,6 +54,7 @@ use crate::scene::layout::Layout;
 use crate::scene::mover::Mover;
 use crate::scene::programs::record;
 use crate::scene::recorder::Recorder;
+use bounds::{Watched, What};
 use branches::Branches;
 use closures::Hook;
 use recorded::Recorded;
@@ -282,44 +281,6 @@ impl System {
         self.recorded.branches.values(&self.numbers, values);
     }
 
-    /// Returns which switching functions are bounded by [`bound_switches`](Self::bound_switches),
-    /// and the unknowns that these read.
-    pub(super) fn bounded_switches(&self) -> (Vec<usize>, Vec<usize>) {
-        self.recorded.branches.bounded()
-    }
-
-    /// Returns the unknowns of loops at the last look at the switching functions; they count as
-    /// unknowns after those of the method.
-    pub(super) fn loop_unknowns(&self) -> &[f64] {
-        self.recorded.branches.loop_unknowns()
-    }
-
-    /// Takes bounds of the time and of the unknowns that switching functions read, with their
-    /// rates; branches are held as they are.
-    pub(super) fn take_bounds(
-        &mut self,
-        time: Interval,
-        unknowns: impl Iterator<Item = (usize, [Interval; 2])>,
-    ) {
-        (self.recorded.branches).take_bounds(&self.numbers, time, unknowns);
-    }
-
-    /// Bounds the switching functions and their rates, over what bounds were taken last
-    /// (n_switches)
-    pub(super) fn bound_switches(&mut self, bounds: &mut [Dual<1, Interval>]) {
-        self.recorded.branches.bound(bounds);
-    }
-
-    /// Bounds one of them.
-    pub(super) fn bound_switch(&mut self, k: usize) -> Dual<1, Interval> {
-        self.recorded.branches.bound_one(k)
-    }
-
-    /// Returns the unknowns that one of them reads.
-    pub(super) fn unknowns_of_switch(&mut self, k: usize) -> Vec<usize> {
-        self.recorded.branches.unknowns_of(k)
-    }
-
     /// Returns whether the motion would stay where switch `k` changes, while those slide that do.
     pub fn attracts(&mut self, t: f64, y: &[f64], k: usize) -> bool {
         if !self.recorded.branches.can_hold() || !self.recorded.external.is_empty() {
@@ -386,33 +347,21 @@ impl System {
         !self.recorded.thickness.is_empty() && h > self.recorded.thickness.surprise
     }
 
-    /// Returns the times at which steps have to end, lest a pulse passes unseen.
-    pub fn landings(&mut self, start: f64, end: f64) -> Vec<f64> {
-        let recorded = &mut self.recorded;
-        recorded
-            .pulses
-            .landings(&mut recorded.time_events, start, end)
+    /// Returns functions that are watched along a step by their bounds, and the numbers of the last
+    /// state.
+    pub(super) fn watched(&mut self, what: What) -> (&mut dyn Watched, &[f64]) {
+        let watched: &mut dyn Watched = match what {
+            What::Switches => &mut self.recorded.branches,
+            What::Peaks => &mut self.recorded.peaks,
+        };
+        (watched, &self.numbers)
     }
 
-    /// Looks at narrow peaks at the end of a step; their slopes are those over a time `delta`.
-    pub(super) fn look_at_peaks(&mut self, t: f64, y: &[f64], ydot: &[f64], delta: f64) {
-        if self.recorded.peaks.is_empty() {
-            return;
-        }
-        let mut later = std::mem::take(&mut self.stage);
-        later.clear();
-        later.extend(y.iter().zip(ydot).map(|(y, f)| y + delta * f));
-        self.set(t + delta, &later);
-        self.recorded.peaks.see_later(&self.numbers);
-        self.stage = later;
+    /// Evaluates functions that are watched at a state   (n)
+    pub(super) fn watch(&mut self, what: What, (t, y): (f64, &[f64]), values: &mut [f64]) {
         self.set(t, y);
-        self.recorded.peaks.see_end(&self.numbers, delta);
-    }
-
-    /// Returns the `k`-th logarithm of the narrow peaks at a state.
-    pub(super) fn peak_at(&mut self, t: f64, y: &[f64], k: usize) -> f64 {
-        self.set(t, y);
-        self.recorded.peaks.eval(&self.numbers)[k]
+        let (watched, numbers) = self.watched(what);
+        watched.values(numbers, values);
     }
 
     /// Returns whether rows have nearly been dependent since this was last asked.

@@ -13,7 +13,6 @@ use super::downstream::DownstreamRates;
 use super::external_inputs::ExternalInputs;
 use super::jacobian::Derivatives;
 use super::peaks::Peaks;
-use super::pulses::Pulses;
 use super::recording::Recording;
 use super::rows::Rows;
 use super::samples::Samples;
@@ -65,8 +64,6 @@ pub(in crate::analysis) struct Recorded {
     pub sensors: Sensors,
     /// discrete states
     pub samples: Samples,
-    /// smooth pulses of functions of time
-    pub pulses: Pulses,
     /// narrow peaks of functions
     pub peaks: Peaks,
     /// breaks at times that are fixed beforehand
@@ -114,8 +111,6 @@ impl Recorded {
         let sensors = Sensors::new(here).map_err(complaints)?;
         let samples = Samples::new(here).map_err(complaints)?;
         look()?;
-        let pulses = Pulses::new(here)?;
-        look()?;
         let peaks = Peaks::new(here)?;
         look()?;
         let recorded = Self {
@@ -132,7 +127,6 @@ impl Recorded {
             external,
             sensors,
             samples,
-            pulses,
             peaks,
         };
         then(recorded, configuration, &recorder)

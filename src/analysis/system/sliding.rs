@@ -19,6 +19,7 @@
 //! Source: Filippov, *Differential Equations with Discontinuous Righthand Sides* (1988), §4;
 //! Piiroinen & Kuznetsov, ACM TOMS 34 (2008).
 
+use super::bounds::Watched;
 use super::branches::{self, Branches};
 use crate::expr::program::Work;
 use crate::numeric::dense::Lu;

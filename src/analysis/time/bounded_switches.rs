@@ -36,11 +36,12 @@
 //! is looked at.
 
 use crate::analysis::system::System;
+use crate::analysis::system::bounds::{Bounds, What};
 use crate::numeric::bernstein::{Courses, hull};
 use crate::numeric::event::{MOST_NAMED, sign};
 use crate::numeric::subdivision::{self, Found, Search, Shown};
 use crate::numeric::{Failure, Method, Step};
-use crate::scalar::{Dual, Interval, Scalar};
+use crate::scalar::{Interval, Scalar};
 
 /// Shortest stretch that is bounded, as a part of the step: a touch that is shorter changes nothing
 /// that the step could tell.
@@ -86,6 +87,7 @@ pub(super) enum Whole {
 /// The switches of a system that can be bounded.
 #[derive(Debug)]
 pub(super) struct BoundedSwitches {
+    what: What,
     /// which   (m)
     which: Vec<usize>,
     /// unknowns that they read, those of loops after those of the method   (u), and how many the
@@ -98,7 +100,7 @@ pub(super) struct BoundedSwitches {
     begin: Vec<[f64; 2]>,
     courses: Courses,
     /// bounds of all switches and of their rates   (n)
-    bounds: Vec<Dual<1, Interval>>,
+    bounds: Vec<Bounds>,
     /// the places in `unknowns` of what each reads, once it was asked   (n)
     reads: Vec<Option<Vec<usize>>>,
     /// times at which all switches were evaluated for one of them, and their values   (n each)
@@ -110,7 +112,7 @@ pub(super) struct BoundedSwitches {
     /// switches in it   (n)
     time: Interval,
     room: Vec<[Interval; 2]>,
-    in_room: Vec<Dual<1, Interval>>,
+    in_room: Vec<Bounds>,
     /// steps in a row that were shown to be free as a whole, and how many of them it takes to be
     /// worth the bounds of a room: twice as many after one that was left at once
     calm: usize,
@@ -130,30 +132,46 @@ pub(super) struct BoundedSwitches {
 pub(super) struct Asked<'a> {
     pub step: &'a Step,
     pub sides: &'a [i8],
+    /// what stands for zero; empty: zero does   (n)
+    pub levels: &'a [f64],
     pub values: [&'a [f64]; 2],
-    pub slopes: [&'a [f64]; 2],
+    /// `None`: the ends and the middle of a step are not to be trusted
+    pub slopes: Option<[&'a [f64]; 2]>,
+}
+
+impl Asked<'_> {
+    /// Returns the level of one of them.
+    fn level(&self, k: usize) -> f64 {
+        self.levels.get(k).copied().unwrap_or(0.0)
+    }
+
+    /// Returns the distances of one of them from its level at both ends.
+    fn ends(&self, k: usize) -> [f64; 2] {
+        self.values.map(|g| g[k] - self.level(k))
+    }
 }
 
 impl BoundedSwitches {
     /// Finds them in a system of `n` switches.
-    pub fn new(system: &System, n: usize) -> Self {
-        let (which, unknowns) = system.bounded_switches();
+    pub fn new(system: &mut System, what: What, n: usize) -> Self {
+        let (which, unknowns) = system.watched(what).0.bounded();
         let u = unknowns.len();
         Self {
+            what,
             which,
             unknowns,
             n_y: system.scene.layout.n_y(),
             loops: Default::default(),
             begin: vec![[0.0; 2]; u],
             courses: Courses::default(),
-            bounds: vec![Dual::constant(0.0); n],
+            bounds: vec![Bounds::constant(0.0); n],
             reads: vec![None; n],
             times: Vec::new(),
             values: Vec::new(),
             open: Vec::new(),
             time: NO_TIME,
             room: vec![[Interval::ANY; 2]; u],
-            in_room: vec![Dual::constant(0.0); n],
+            in_room: vec![Bounds::constant(0.0); n],
             calm: 0,
             calm_enough: 1,
             state: Vec::new(),
@@ -173,15 +191,20 @@ impl BoundedSwitches {
     }
 
     /// Takes the unknowns of loops at the state at which the switches were evaluated last.
-    pub fn take_loops(&mut self, system: &System) {
+    pub fn take_loops(&mut self, system: &mut System) {
         self.loops[0].clear();
-        self.loops[0].extend_from_slice(system.loop_unknowns());
+        self.loops[0].extend_from_slice(system.watched(self.what).0.loop_unknowns());
     }
 
     /// Takes their rates, `delta` after they were taken.
-    pub fn take_rates_of_loops(&mut self, system: &System, delta: f64) {
+    pub fn take_rates_of_loops(&mut self, system: &mut System, delta: f64) {
         let [values, rates] = &mut self.loops;
-        let all = system.loop_unknowns().iter().zip(values);
+        let all = system
+            .watched(self.what)
+            .0
+            .loop_unknowns()
+            .iter()
+            .zip(values);
         rates.clear();
         rates.extend(all.map(|(later, now)| (later - *now) / delta));
     }
@@ -236,7 +259,7 @@ impl BoundedSwitches {
         open.extend(self.which.iter().filter(|&&k| {
             let free = |k: usize| {
                 let bounds = self.in_room[k];
-                let values = asked.values.map(|g| g[k]);
+                let values = asked.ends(k);
                 of_one(k, bounds, asked, values, asked.step.h, true) == Shown::Free
             };
             asked.sides[k] != 0 && !(stays && free(k))
@@ -275,9 +298,10 @@ impl BoundedSwitches {
             let of_step = hulls(self.begin[i], self.at_end(k, y, ydot), step.h);
             self.room[i] = of_step.map(|x| widened(x, ROOM));
         }
-        let unknowns = self.unknowns.iter().copied().zip(self.room.iter().copied());
-        system.take_bounds(self.time, unknowns);
-        system.bound_switches(&mut self.in_room);
+        let mut unknowns = self.unknowns.iter().copied().zip(self.room.iter().copied());
+        let (watched, numbers) = system.watched(self.what);
+        watched.take_bounds(numbers, self.time, &mut unknowns);
+        watched.bound(&mut self.in_room);
         true
     }
 
@@ -329,8 +353,13 @@ impl BoundedSwitches {
         Ok(seen)
     }
 
+    /// Forgets the values within the step before.
+    pub fn forget_values(&mut self) {
+        self.times.clear();
+    }
+
     /// Finds the first stretch, before `end`, in which one of them comes to zero.
-    fn first_of_one(
+    pub fn first_of_one(
         &mut self,
         system: &mut System,
         method: &mut dyn Method<System>,
@@ -338,7 +367,7 @@ impl BoundedSwitches {
         (k, end): (usize, f64),
     ) -> Found<[f64; 2]> {
         let Step { t0, t1, h, .. } = *asked.step;
-        self.times.clear();
+        self.forget_values();
         let search = Search {
             // the whole step has been looked at
             first: if end < t1 { end - t0 } else { 0.5 * h },
@@ -392,24 +421,27 @@ impl BoundedSwitches {
         let Step { t0, t1, h, .. } = *asked.step;
         let (y, ydot) = (method.y(), method.ydot());
         let ends = self.unknowns.iter().zip(&self.begin);
-        let unknowns = ends.map(|(&k, &begin)| {
+        let mut unknowns = ends.map(|(&k, &begin)| {
             let of_step = hulls(begin, self.at_end(k, y, ydot), h);
             (k, of_step.map(|x| widened(x, 0.5)))
         });
-        system.take_bounds(Interval::between(t0, t1), unknowns);
+        let (watched, numbers) = system.watched(self.what);
+        watched.take_bounds(numbers, Interval::between(t0, t1), &mut unknowns);
         let mut whole = Whole::Free;
         let mut open = std::mem::take(&mut self.open);
         open.retain(|&k| {
-            let bounds = system.bound_switch(k);
-            let values = asked.values.map(|g| g[k]);
+            let bounds = watched.bound_one(k);
+            let values = asked.ends(k);
             let of_one = match of_one(k, bounds, asked, values, h, true) {
                 Shown::Free => return false,
                 Shown::Event => Whole::Event,
                 Shown::Until(_) | Shown::Nothing => {
-                    let [g0, g1] = values;
-                    let [slope0, slope1] = asked.slopes.map(|slope| slope[k]);
-                    let span = hulls([g0, slope0], [g1, slope1], h)[0];
-                    let most = RESOLVED * (span.hi - span.lo) / h;
+                    let most = asked.slopes.map_or(0.0, |slopes| {
+                        let [g0, g1] = values;
+                        let [slope0, slope1] = slopes.map(|slope| slope[k]);
+                        let span = hulls([g0, slope0], [g1, slope1], h)[0];
+                        RESOLVED * (span.hi - span.lo) / h
+                    });
                     let rate = bounds.eps[0];
                     match rate.lo >= -most && rate.hi <= most {
                         true => Whole::Resolved,
@@ -429,7 +461,10 @@ impl BoundedSwitches {
     }
 
     /// Takes the interpolant of a step.
-    fn follow(
+    ///
+    /// # Errors
+    /// It has no value somewhere.
+    pub fn follow(
         &mut self,
         system: &mut System,
         method: &mut dyn Method<System>,
@@ -448,9 +483,9 @@ impl BoundedSwitches {
                 method.interpolate(system, t, &mut self.state)?;
             }
             if self.unknowns.last().is_some_and(|&k| k >= self.n_y) {
-                system.switches(t, &self.state, &mut self.scratch);
+                system.watch(self.what, (t, &self.state), &mut self.scratch);
             }
-            let loops = system.loop_unknowns();
+            let loops = system.watched(self.what).0.loop_unknowns();
             let values = self.courses.values_at(i).iter_mut();
             for (value, &k) in values.zip(&self.unknowns) {
                 *value = match k.checked_sub(self.n_y) {
@@ -470,19 +505,21 @@ impl BoundedSwitches {
         asked: Asked<'_>,
         (k, [from, to]): (usize, [f64; 2]),
     ) -> Shown {
+        let (watched, numbers) = system.watched(self.what);
         let reads = self.reads[k].get_or_insert_with(|| {
-            let unknowns = system.unknowns_of_switch(k).into_iter();
+            let unknowns = watched.unknowns_of(k).into_iter();
             unknowns
                 .filter_map(|y| self.unknowns.binary_search(&y).ok())
                 .collect()
         });
         let (unknowns, courses) = (&self.unknowns, &mut self.courses);
         let bounded = |&j: &usize| (unknowns[j], courses.bound(j, from, to));
-        system.take_bounds(Interval::between(from, to), reads.iter().map(bounded));
-        let bounds = system.bound_switch(k);
+        let mut of_reads = reads.iter().map(bounded);
+        watched.take_bounds(numbers, Interval::between(from, to), &mut of_reads);
+        let bounds = watched.bound_one(k);
         self.bounds[k] = bounds;
         let side = f64::from(asked.sides[k]);
-        if ordered(bounds.re, side).0 >= 0.0 {
+        if ordered(bounds.re - Interval::constant(asked.level(k)), side).0 >= 0.0 {
             return Shown::Free;
         }
         let ends = [from, to].map(|t| self.value(system, method, asked, (k, t)));
@@ -503,8 +540,9 @@ impl BoundedSwitches {
         }
     }
 
-    /// Returns the value of one of them at a time of the step; `None`: it has none.
-    fn value(
+    /// Returns how far one of them is from its level at a time of the step; `None`: it has no
+    /// value.
+    pub fn value(
         &mut self,
         system: &mut System,
         method: &mut dyn Method<System>,
@@ -512,13 +550,13 @@ impl BoundedSwitches {
         (k, t): (usize, f64),
     ) -> Option<f64> {
         if t <= asked.step.t0 {
-            return Some(asked.values[0][k]);
+            return Some(asked.ends(k)[0]);
         }
         if t >= asked.step.t1 {
-            return Some(asked.values[1][k]);
+            return Some(asked.ends(k)[1]);
         }
         if let Some(i) = self.times.iter().position(|&known| known == t) {
-            return Some(self.values[i][k]);
+            return Some(self.values[i][k] - asked.level(k));
         }
         method.interpolate(system, t, &mut self.state).ok()?;
         let i = self.times.len();
@@ -526,8 +564,8 @@ impl BoundedSwitches {
             self.values.push(vec![0.0; self.bounds.len()]);
         }
         self.times.push(t);
-        system.switches(t, &self.state, &mut self.values[i]);
-        Some(self.values[i][k])
+        system.watch(self.what, (t, &self.state), &mut self.values[i]);
+        Some(self.values[i][k] - asked.level(k))
     }
 }
 
@@ -535,7 +573,7 @@ impl BoundedSwitches {
 /// `begins`: whether it is put there onto the side on which it is held.
 fn of_one(
     k: usize,
-    Dual { re, eps }: Dual<1, Interval>,
+    Bounds { re, eps }: Bounds,
     asked: Asked<'_>,
     values: [f64; 2],
     h: f64,
@@ -546,7 +584,7 @@ fn of_one(
     if begins {
         a = a.max(0.0);
     }
-    let rate = eps[0];
+    let (re, rate) = (re - Interval::constant(asked.level(k)), eps[0]);
     match course(ordered(re, side).0, ordered(rate, side), [a, b], h) {
         // division would end at the shortest stretch only
         Shown::Nothing if b < 0.0 && h < SHORT * asked.step.h && !is_finite(rate) => Shown::Event,
@@ -555,7 +593,7 @@ fn of_one(
 }
 
 /// Returns the length of the shortest stretch of a step that is divided no further, in s.
-fn shortest(step: &Step) -> f64 {
+pub(super) fn shortest(step: &Step) -> f64 {
     (SHORTEST * step.h).max(8.0 * f64::EPSILON * step.t1.abs())
 }
 

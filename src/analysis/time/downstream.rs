@@ -145,8 +145,6 @@ pub(super) struct Downstream {
     has_begun: bool,
     /// whether they begin anew with the next step of the mechanism
     anew: bool,
-    /// times at which steps have to end
-    landings: Vec<f64>,
     readings: Readings,
     /// attempted steps, and the time, when they last came further
     progressed: (usize, f64),
@@ -154,11 +152,9 @@ pub(super) struct Downstream {
 
 impl Downstream {
     /// Prepares the integration up to `end`; `None`: there is nothing downstream.
-    pub fn new(system: &mut System, end: f64, options: &Options) -> Option<Self> {
+    pub fn new(system: &System, end: f64, options: &Options) -> Option<Self> {
         let start = system.numbers[Layout::TIME];
-        let rates = system.recorded.downstream.as_ref()?;
-        let pulses = rates.pulses.clone();
-        let landings = pulses.landings(&mut system.recorded.time_events, start, end);
+        system.recorded.downstream.as_ref()?;
         let x = system.numbers[system.scene.layout.downstream()].to_vec();
         let settings = numeric::Options {
             h_initial: None,
@@ -173,7 +169,6 @@ impl Downstream {
             steps_before: 0,
             has_begun: false,
             anew: true,
-            landings,
             readings: Readings::default(),
             progressed: (0, start),
         })
@@ -321,9 +316,7 @@ impl Downstream {
                 let begun = self.method.start(beside, now, &self.x);
                 begun.map_err(Halt::Stop)?;
             }
-            let passed = self.landings.partition_point(|&l| l <= now);
-            let limit = self.landings.get(passed).map_or(t1, |&l| l.min(t1));
-            let taken = self.method.step(beside, limit);
+            let taken = self.method.step(beside, t1);
             taken.map_err(Halt::Stop)?;
             self.check()?;
         }

@@ -169,7 +169,6 @@ fn go(
     }
     let first = out.t.len();
     let mut outputs = [&out.t[..], outputs].concat();
-    let landings = system.landings(t0, end);
     let mut course = Course::new(options, n);
     system.expect_outputs(outputs.len() - first, false);
     let mut t = t0;
@@ -186,7 +185,6 @@ fn go(
         let limits = Limits {
             start: t,
             end,
-            landings: &landings,
             max_steps,
             memory: course.memory(),
             may_change: course.may_change(),

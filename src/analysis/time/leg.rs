@@ -14,7 +14,7 @@ use crate::analysis::system::past;
 use crate::analysis::time::counting::Counting;
 use crate::analysis::time::downstream::Downstream;
 use crate::analysis::time::energy::Accountant;
-use crate::analysis::time::leg_peaks::Peak;
+use crate::analysis::time::leg_peaks::PeaksWithin;
 use crate::analysis::time::output::Output;
 use crate::analysis::time::ranks::{Side, Sides};
 use crate::analysis::time::states::Node;
@@ -43,7 +43,7 @@ const OPERATIONS_TOGETHER: usize = 1_500_000;
 /// each may still be those of all.
 const EVENTS_TOGETHER: usize = 32;
 const WITHOUT_EVENTS: usize = 10;
-/// Shortest way that is looked ahead for pulses, bodies and the past, as a part of the time left.
+/// Shortest way that is looked ahead for bodies and the past, as a part of the time left.
 const LEAST_HORIZON: f64 = 1e-6;
 /// The same for delays that shrink to nothing.
 const LEAST_DELAY: f64 = 1e-9;
@@ -74,8 +74,6 @@ pub(super) struct Limits<'a> {
     pub start: f64,
     /// where the analysis is to end
     pub end: f64,
-    /// times at which steps have to end
-    pub landings: &'a [f64],
     /// attempted steps permitted
     pub max_steps: usize,
     /// what a method of the same kind has left where this one begins; `None`: it begins anew
@@ -119,10 +117,8 @@ pub(super) struct Leg<'a> {
     stalled_steps: usize,
     /// changes of branches so far
     changes: usize,
-    /// the narrow peak that is being crossed
-    pub(super) peak: Option<Peak>,
-    /// how often in a row the step was repeated because of peaks
-    pub(super) repeated: usize,
+    /// narrow peaks within the step under way
+    peaks: PeaksWithin,
     accountant: Accountant,
     /// how far the present step may go
     limit: f64,
@@ -177,8 +173,7 @@ impl<'a> Leg<'a> {
             progressed: (0, limits.start),
             stalled_steps: affordable.clamp(least, most),
             changes: 0,
-            peak: None,
-            repeated: 0,
+            peaks: PeaksWithin::new(system, limits.end - limits.start),
             accountant: Accountant::default(),
             limit: limits.end,
             lands_for_output: false,
@@ -255,7 +250,7 @@ impl<'a> Leg<'a> {
         if let Some(h) = self.sense_beginning(method)? {
             method.propose(h);
         }
-        self.begin_peaks(method);
+        self.peaks.begin(self.system, method);
         self.downstream_begins_anew();
         self.system.take_weak();
         self.progressed = (attempted(method), method.t());
@@ -292,9 +287,6 @@ impl<'a> Leg<'a> {
     fn step(&mut self, method: &mut dyn Method<System>) -> Result<Option<Step>, Finished> {
         let horizon = self.horizon(method);
         let limit = std::mem::replace(&mut self.landing, self.limits.end).min(horizon);
-        let landings = self.limits.landings;
-        let passed = landings.partition_point(|&l| l <= method.t());
-        let limit = landings.get(passed).map_or(limit, |&l| limit.min(l));
         self.limit = limit;
         if !self.before.is_empty() {
             self.before.copy_from_slice(method.y());
@@ -332,8 +324,7 @@ impl<'a> Leg<'a> {
             .due()
             .min(t + unseen)
             .min(event)
-            .min(turned)
-            .min(self.peak_horizon(t));
+            .min(turned);
         if self.system.recorded.external.delays.is_empty() {
             return due;
         }
@@ -365,7 +356,7 @@ impl<'a> Leg<'a> {
         self.halved = 0;
         // angles that decide forces by the wrong turn, and narrow peaks
         let lost = self.loses_turn(method, step);
-        if let Some(t) = lost.or_else(|| self.hidden_peak(method, step)) {
+        if let Some(t) = lost.or_else(|| self.peaks.hidden(self.system, method, step)) {
             method.undo();
             self.landing = t;
             return Ok(Judged::Undone);
@@ -420,8 +411,7 @@ impl<'a> Leg<'a> {
     fn accept(&mut self, method: &mut dyn Method<System>, step: &Step) -> Result<f64, Finished> {
         let behind = self.system.recorded.time_events.behind(step.t1);
         let anew = behind.unwrap_or(step.t1).min(self.limits.end);
-        self.repeated = 0;
-        self.system.recorded.peaks.keep();
+        self.peaks.keep(method);
         self.emit(method, step, anew)?;
         self.account(method, step);
         self.out.last_step = Some((step.t1, step.h));
@@ -550,7 +540,7 @@ impl<'a> Leg<'a> {
         method.reinitialize(self.system, anew, &state)?;
         self.look_ahead(method)?;
         let stepsize = self.sense_beginning(method)?.or(stepsize);
-        self.begin_peaks(method);
+        self.peaks.begin(self.system, method);
         self.downstream_begins_anew();
         // after the method has begun anew, which chooses a step of its own
         if let Some(h) = stepsize {

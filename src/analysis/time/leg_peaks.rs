@@ -1,187 +1,228 @@
-//! Narrow peaks of forces within a step of a leg: located on the interpolant, and crossed with
-//! steps that see them.
+//! Narrow peaks of forces within a step: whether one is hidden between its ends.
+//!
+//! ```text
+//! L(t) < max(L(t₀), L(t₁), NEGLIGIBLE) + HIDDEN         L: the logarithm of a factor
+//! ```
+//!
+//! Where a factor is between the ends of a step no more than e^[`HIDDEN`] times larger than at one
+//! of them, error control sees it. Whether it is, is shown by bounds, as for switches
+//! (`bounded_switches.rs`). Where it becomes larger, the step is undone and ends on the way to the
+//! peak: [`DEPTH`] below a level that it passes at first, then in stairs of [`HIDDEN`], up and down
+//! again.
 
 use crate::analysis::system::System;
-use crate::analysis::time::leg::Leg;
-use crate::numeric::{Failure, Method, Step};
+use crate::analysis::system::bounds::What;
+use crate::analysis::time::bounded_switches::{Asked, BoundedSwitches, Whole, shortest};
+use crate::analysis::time::switches::SHORTEST_STEP;
+use crate::numeric::{Method, Step};
 
-/// Looks at a logarithm within a step, before its maximum is closed in.
-const LOOKS: usize = 5;
-/// Golden sections that close in on a maximum, at most: to 1e-14 of the step.
-const SECTIONS: usize = 70;
-/// Halvings of the way from a maximum on which the logarithm falls by one.
-const HALVINGS: usize = 60;
+/// Growth of a logarithm above its values at the ends of a step up to which a step feels its
+/// factor: seven times.
+const HIDDEN: f64 = 2.0;
+/// Depth below its peak from which on a factor is felt: a three thousandth of it.
+const DEPTH: f64 = 8.0;
 /// Logarithm of a factor that is felt nowhere, whatever it multiplies.
 const NEGLIGIBLE: f64 = -100.0;
-/// Part of a step that a peak must be narrower than to be hidden in it.
-const NARROW: f64 = 0.5;
-/// Shortest width of a peak, as a part of the duration of the run.
-const NARROWEST: f64 = 1e-13;
-/// Fall of the logarithm beyond which steps may grow again: to 2e-9 of the peak.
-const DEPTH: f64 = 20.0;
-/// Distance from a maximum, in widths, beyond which they may grow whatever is left.
-const FARTHEST: f64 = 20.0;
-/// Growth of the distance at which that is looked for.
-const GROWTH: f64 = 1.3;
-/// Fall of the logarithm on the bracket of a maximum that is known well enough.
-const CLOSED_IN: f64 = 0.1;
+/// Levels that are tried in search of the height of a peak, at most: a pole has none.
+const MAX_LEVELS: usize = 32;
 /// Steps that are repeated at one time because of peaks, at most.
 const MAX_REPEATED: usize = 20;
 
-/// A narrow peak, in time.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Peak {
-    /// where steps begin to be short, and where they may grow again
-    from: f64,
-    to: f64,
-    /// time in which the logarithm falls by one
-    width: f64,
+/// Narrow peaks within the step under way.
+#[derive(Debug)]
+pub(super) struct PeaksWithin {
+    watched: BoundedSwitches,
+    /// which logarithms are asked for: they are to stay below their levels   (n)
+    sides: Vec<i8>,
+    levels: Vec<f64>,
+    /// values at the beginning of the step and at its end   (n each)
+    before: Vec<f64>,
+    after: Vec<f64>,
+    /// the largest value of each whose peak is being crossed; else −∞   (n)
+    tops: Vec<f64>,
+    /// how often in a row the step was repeated
+    repeated: usize,
+    /// shortest step because of a peak, in s
+    shortest: f64,
 }
 
-impl Leg<'_> {
-    /// Looks at the narrow peaks where a method begins.
-    pub(super) fn begin_peaks(&mut self, method: &dyn Method<System>) {
-        if self.system.recorded.peaks.is_empty() {
-            return;
+impl PeaksWithin {
+    /// Finds the logarithms of a system, for a run of some duration.
+    pub fn new(system: &mut System, duration: f64) -> Self {
+        let n = system.recorded.peaks.len();
+        Self {
+            watched: BoundedSwitches::new(system, What::Peaks, n),
+            sides: vec![0; n],
+            levels: vec![0.0; n],
+            before: vec![0.0; n],
+            after: vec![0.0; n],
+            tops: vec![f64::NEG_INFINITY; n],
+            repeated: 0,
+            shortest: SHORTEST_STEP * duration,
         }
-        let delta = 1e-9 * (self.limits.end - self.limits.start);
-        let (t, y) = (method.t(), method.y());
-        self.system.look_at_peaks(t, y, method.ydot(), delta);
-        self.system.recorded.peaks.keep();
     }
 
-    /// Returns how far a step from `t` may go because of narrow peaks.
-    pub(super) fn peak_horizon(&mut self, t: f64) -> f64 {
-        if self.system.recorded.peaks.is_empty() {
-            return f64::INFINITY;
+    /// Looks at them where a method begins.
+    pub fn begin(&mut self, system: &mut System, method: &dyn Method<System>) {
+        if self.sides.is_empty() {
+            return;
         }
-        let turned = t + self.system.recorded.peaks.longest_turn();
-        self.peak = self.peak.filter(|p| t < p.to);
-        match self.peak {
-            Some(p) if t < p.from - p.width => turned.min(p.from),
-            Some(p) => turned.min(t + p.width),
-            None => turned,
+        system.watch(What::Peaks, (method.t(), method.y()), &mut self.after);
+        self.keep(method);
+    }
+
+    /// Makes the end of a step the beginning of the next.
+    pub fn keep(&mut self, method: &dyn Method<System>) {
+        if self.sides.is_empty() {
+            return;
+        }
+        self.repeated = 0;
+        self.watched.begin(method.y(), method.ydot());
+        std::mem::swap(&mut self.before, &mut self.after);
+        for (top, &now) in self.tops.iter_mut().zip(&self.before) {
+            *top = match *top > f64::NEG_INFINITY && now > *top - DEPTH {
+                true => top.max(now),
+                false => f64::NEG_INFINITY,
+            };
         }
     }
 
     /// Returns where the step has to end instead, if a narrow peak is hidden in it.
-    pub(super) fn hidden_peak(
+    pub fn hidden(
         &mut self,
+        system: &mut System,
         method: &mut dyn Method<System>,
         step: &Step,
     ) -> Option<f64> {
-        if self.system.recorded.peaks.is_empty() {
+        if self.sides.is_empty() {
             return None;
         }
-        let (y, ydot) = (method.y(), method.ydot());
-        self.system.look_at_peaks(step.t1, y, ydot, 1e-4 * step.h);
-        if self.repeated >= MAX_REPEATED {
+        system.watch(What::Peaks, (step.t1, method.y()), &mut self.after);
+        if self.repeated >= MAX_REPEATED || step.h <= self.shortest {
             return None;
         }
-        let hidden = self.system.recorded.peaks.hidden(step.h).into_iter();
-        // a peak at which the interpolant has no value is left to error control
-        let found = hidden.filter_map(|k| self.locate(method, step, k).ok().flatten());
-        let first = found.min_by(|a, b| a.from.total_cmp(&b.from))?;
-        self.repeated += 1;
-        self.peak = Some(first);
-        Some(first.from.max(step.t0 + first.width))
-    }
-
-    /// Locates the maximum of a logarithm within a step; `None`: it is not narrow, or not felt.
-    fn locate(
-        &mut self,
-        method: &mut dyn Method<System>,
-        step: &Step,
-        k: usize,
-    ) -> Result<Option<Peak>, Failure> {
-        let mut state = method.y().to_vec();
-        let mut at = |t: f64| {
-            method.interpolate(self.system, t, &mut state)?;
-            let value = self.system.peak_at(t, &state, k);
+        let ends = self.before.iter().zip(&self.after);
+        for ((level, side), (a, b)) in self.levels.iter_mut().zip(&mut self.sides).zip(ends) {
+            *level = a.max(*b).max(NEGLIGIBLE) + HIDDEN;
             // what has no value is no peak
-            Ok::<f64, Failure>(if value.is_nan() {
-                f64::NEG_INFINITY
-            } else {
-                value
-            })
+            *side = -i8::from(level.is_finite() && !a.is_nan() && !b.is_nan());
+        }
+        let asked = Asked {
+            step,
+            sides: &self.sides,
+            levels: &self.levels,
+            values: [&self.before, &self.after],
+            slopes: None,
         };
-        // the highest of some looks
-        let time = |j: usize| step.t0 + step.h * j as f64 / (LOOKS + 1) as f64;
-        let mut highest = (1, at(time(1))?);
-        for j in 2..=LOOKS {
-            let value = at(time(j))?;
-            highest = if value > highest.1 {
-                (j, value)
-            } else {
-                highest
-            };
+        let is_free = self.watched.are_far(system, method, asked)
+            || self.watched.look_at_whole(system, method, asked) == Whole::Free;
+        let falls = |&k: &usize| {
+            self.tops[k] > f64::NEG_INFINITY && self.after[k] < self.before[k] - HIDDEN
+        };
+        let falling: Vec<usize> = (0..self.sides.len()).filter(falls).collect();
+        if is_free && falling.is_empty() {
+            return None;
         }
-        let (mut a, mut b) = (time(highest.0 - 1), time(highest.0 + 1).min(step.t1));
-        // golden sections
-        let golden = 0.5 * (5f64.sqrt() - 1.0);
-        let (mut at_a, mut at_b) = (at(a)?, at(b)?);
-        let (mut c, mut d) = (b - golden * (b - a), a + golden * (b - a));
-        let (mut at_c, mut at_d) = (at(c)?, at(d)?);
-        for _ in 0..SECTIONS {
-            if at_c.max(at_d) - at_a.min(at_b) < CLOSED_IN {
-                break;
-            }
-            if at_c > at_d {
-                (b, d, at_b, at_d) = (d, c, at_d, at_c);
-                c = b - golden * (b - a);
-                at_c = at(c)?;
-            } else {
-                (a, c, at_a, at_c) = (c, d, at_c, at_d);
-                d = a + golden * (b - a);
-                at_d = at(d)?;
+        // a peak at which the interpolant has no value is left to error control
+        self.watched.follow(system, method, step).ok()?;
+        let mut at = f64::INFINITY;
+        if !is_free {
+            for k in self.watched.open().to_vec() {
+                if let Some(found) = self.approach(system, method, (step, k)) {
+                    self.tops[k] = self.tops[k].max(self.before[k]);
+                    at = at.min(found);
+                }
             }
         }
-        let (summit, height) = if at_c > at_d { (c, at_c) } else { (d, at_d) };
-        if !self.system.recorded.peaks.stands_out(k, height) || height < NEGLIGIBLE {
-            return Ok(None);
+        for k in falling {
+            at = at.min(self.leave(system, method, (step, k)));
         }
-        self.width(method, step, (summit, height, k))
+        let at = at.max(step.t0 + self.shortest);
+        self.repeated += 1;
+        (at < step.t1).then_some(at)
     }
 
-    /// Returns the extent of a peak about the maximum of a logarithm; `None`: it is not narrow.
-    fn width(
+    /// Returns where to end on the way down from a peak: where a logarithm has fallen by
+    /// [`HIDDEN`], or nearly so.
+    fn leave(
         &mut self,
+        system: &mut System,
         method: &mut dyn Method<System>,
-        step: &Step,
-        (summit, height, k): (f64, f64, usize),
-    ) -> Result<Option<Peak>, Failure> {
-        let mut state = method.y().to_vec();
-        let mut fall = |distance: f64| {
-            let mut lowest = 0.0_f64;
-            let sides = [summit - distance, summit + distance];
-            for t in sides
-                .into_iter()
-                .filter(|t| (step.t0..=step.t1).contains(t))
-            {
-                method.interpolate(self.system, t, &mut state)?;
-                lowest = lowest.max(height - self.system.peak_at(t, &state, k));
-            }
-            Ok::<f64, Failure>(lowest)
+        (step, k): (&Step, usize),
+    ) -> f64 {
+        self.levels[k] = self.before[k] - HIDDEN;
+        let asked = Asked {
+            step,
+            sides: &self.sides,
+            levels: &self.levels,
+            values: [&self.before, &self.after],
+            slopes: None,
         };
-        // inside the step whatever its rounding
-        let most = 0.99 * (summit - step.t0).max(step.t1 - summit);
-        let mut width = most;
-        for _ in 0..HALVINGS {
-            if fall(width)? <= 1.0 {
+        self.watched.forget_values();
+        let [mut a, mut b] = [step.t0, step.t1];
+        while b - a > shortest(step) {
+            let middle = 0.5 * (a + b);
+            match self.watched.value(system, method, asked, (k, middle)) {
+                Some(above) if above > 0.5 * HIDDEN => a = middle,
+                Some(above) if above >= 0.0 => return middle,
+                _ => b = middle,
+            }
+        }
+        b
+    }
+
+    /// Returns where to end on the way to the first peak of a logarithm.
+    fn approach(
+        &mut self,
+        system: &mut System,
+        method: &mut dyn Method<System>,
+        (step, k): (&Step, usize),
+    ) -> Option<f64> {
+        let stair = self.levels[k];
+        let mut found = self.first_above(system, method, (step, k))?;
+        let mut last = found;
+        for _ in 0..MAX_LEVELS {
+            self.levels[k] += DEPTH;
+            let Some(higher) = self.first_above(system, method, (step, k)) else {
+                break;
+            };
+            (found, last) = (last, higher);
+        }
+        self.levels[k] = stair;
+        Some(found)
+    }
+
+    /// Returns a time of the step at which a logarithm is above its level, and not by much.
+    fn first_above(
+        &mut self,
+        system: &mut System,
+        method: &mut dyn Method<System>,
+        (step, k): (&Step, usize),
+    ) -> Option<f64> {
+        let asked = Asked {
+            step,
+            sides: &self.sides,
+            levels: &self.levels,
+            values: [&self.before, &self.after],
+            slopes: None,
+        };
+        let watched = &mut self.watched;
+        let found = watched.first_of_one(system, method, asked, (k, step.t1));
+        let Some([mut a, mut b]) = found.event else {
+            let is_looked_at = found.free_to >= step.t1;
+            return (!is_looked_at && found.free_to > step.t0).then_some(found.free_to);
+        };
+        while b - a > shortest(step) {
+            let mut above = |t| watched.value(system, method, asked, (k, t));
+            if above(b).is_none_or(|above| above <= HIDDEN) {
                 break;
             }
-            width *= 0.5;
+            let middle = 0.5 * (a + b);
+            match above(middle).is_some_and(|above| above > 0.0) {
+                true => b = middle,
+                false => a = middle,
+            }
         }
-        let mut reach = width;
-        while reach < (FARTHEST * width).min(most) && fall(reach)? < DEPTH {
-            reach *= GROWTH;
-        }
-        let duration = self.limits.end - self.limits.start;
-        let is_narrow = width < NARROW * step.h && width > NARROWEST * duration;
-        Ok(is_narrow.then_some(Peak {
-            from: summit - reach,
-            to: summit + reach,
-            width,
-        }))
+        Some(b)
     }
 }

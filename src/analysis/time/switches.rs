@@ -32,6 +32,7 @@
 //! [`never_end`], and where one chatters (`chatter.rs`).
 
 use crate::analysis::system::System;
+use crate::analysis::system::bounds::What;
 use crate::analysis::time::bounded_switches::{Asked, BoundedSwitches, Seen, Whole};
 use crate::analysis::time::chatter::Chatter;
 use crate::numeric::event::{Locator, sign};
@@ -57,10 +58,10 @@ const LANDING_TOLERANCE: f64 = 0.1;
 /// Distance from zero after the shortest step, as a part of the change within the longer step that
 /// found the switch, that is none.
 const NO_DISTANCE: f64 = 1e-6;
-/// Length below which no step is shortened because of a switch, as a part of the duration of the
-/// run: at time 0 there is always a shorter one, and a function whose branches are noise would lead
-/// there.
-const SHORTEST_STEP: f64 = 1e-13;
+/// Length below which no step is shortened because of a switch or a peak, as a part of the duration
+/// of the run: at time 0 there is always a shorter one, and a function whose branches are noise
+/// would lead there.
+pub(super) const SHORTEST_STEP: f64 = 1e-13;
 /// Distance of a value in the middle of a step from the cubic through its ends, as a part of the
 /// span of the control points of that, up to which the cubic stands for the values between.
 const CUBIC_TOLERANCE: f64 = 0.05;
@@ -158,7 +159,7 @@ pub struct Switches {
 impl Switches {
     /// Prepares the switches of a system whose state has `size` numbers, for a run of some
     /// duration.
-    pub fn new(system: &System, size: usize, duration: f64) -> Self {
+    pub fn new(system: &mut System, size: usize, duration: f64) -> Self {
         let n = system.branches().len();
         Self {
             locator: Locator::new(n),
@@ -181,7 +182,7 @@ impl Switches {
             worst: 0,
             rest: 0,
             chatter: Chatter::default(),
-            bounded: BoundedSwitches::new(system, n),
+            bounded: BoundedSwitches::new(system, What::Switches, n),
             asked: Vec::with_capacity(n),
             shown: vec![false; n],
             duration,
@@ -467,8 +468,9 @@ impl Switches {
         let asked = Asked {
             step,
             sides: &self.asked,
+            levels: &[],
             values: [&self.g0, &self.g1],
-            slopes: [&self.slope0, &self.slope1],
+            slopes: Some([&self.slope0, &self.slope1]),
         };
         if self.bounded.are_far(system, method, asked) {
             return Seen::Nothing;
@@ -490,8 +492,9 @@ impl Switches {
                 let asked = Asked {
                     step,
                     sides: &self.asked,
+                    levels: &[],
                     values: [&self.g0, &self.g1],
-                    slopes: [&self.slope0, &self.slope1],
+                    slopes: Some([&self.slope0, &self.slope1]),
                 };
                 let seen = self.bounded.look_at_stretches(system, method, asked);
                 // where the interpolant has no value, the scan says so, too

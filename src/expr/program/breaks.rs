@@ -123,25 +123,6 @@ impl Builder {
         }
     }
 
-    /// Returns of each value whether it reads one input and no other.
-    #[cfg(feature = "solver")]
-    pub(crate) fn read_alone(&self, input: Input, values: &[Value]) -> Vec<bool> {
-        const IT: u8 = 1;
-        const ANOTHER: u8 = 2;
-        let n = values.iter().map(|v| v.index() + 1).max().unwrap_or(0);
-        let mut read: Vec<u8> = Vec::with_capacity(n);
-        for node in &self.nodes[..n] {
-            let mut own = match *node {
-                Node::Input(k) if self.inputs[k as usize] == input => IT,
-                Node::Input(_) => ANOTHER,
-                _ => 0,
-            };
-            self.operands(node, |v| own |= read[v.index()]);
-            read.push(own);
-        }
-        values.iter().map(|v| read[v.index()] == IT).collect()
-    }
-
     /// Returns the inputs that values read, in the order of asking.
     pub(crate) fn inputs_of(&self, values: &[Value]) -> Vec<Input> {
         let n = values.iter().map(|v| v.index() + 1).max().unwrap_or(0);

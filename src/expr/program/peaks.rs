@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A curve through data is narrow where these change within a way much shorter than the next change
-//! is away: beside each such bump its distance in widths stands for the logarithm.
+//! is away: what rises with each width towards the middle of such a bump stands for the logarithm.
 //!
 //! TANH and ATAN are steep there: the difference of two of them is a pulse. While the logarithm
 //! changes by one the factor changes by a factor of e, so the logarithm is a scale for steps,
@@ -33,17 +33,11 @@ const NARROW_POWER: f64 = 8.0;
 const STRAIGHT: f64 = 1e-6;
 /// Distance of bends, in widths of both, up to which they are one bump: a step sees it.
 const JOINED: f64 = 12.0;
+/// Rise of what stands for the logarithm of a bump with each width: what is zero beside it must be
+/// met within a width.
+const PER_WIDTH: f64 = 4.0;
 /// Bumps of one curve that are looked for, at most.
 const MOST_BUMPS: usize = 200;
-
-/// Values whose course in time shows the narrow peaks of a program.
-#[derive(Debug, Default)]
-pub(crate) struct Peaks {
-    /// logarithms: a factor peaks where one has a maximum
-    pub logarithms: Vec<Value>,
-    /// angles whose sines and cosines these are made of
-    pub angles: Vec<Value>,
-}
 
 impl Program {
     /// Returns whether it has operations that may be narrow; most expressions have none.
@@ -69,9 +63,9 @@ impl Program {
 }
 
 impl Builder {
-    /// Returns the logarithms of the narrow factors of some outputs, each once, and the angles that
-    /// they are made of.
-    pub(crate) fn peaks(&mut self, outputs: &[Value]) -> Peaks {
+    /// Returns the logarithms of the narrow factors of some outputs, each once: a factor peaks
+    /// where one has a maximum.
+    pub(crate) fn peaks(&mut self, outputs: &[Value]) -> Vec<Value> {
         let nodes = self.nodes_below(outputs);
         let mut logarithms = BTreeSet::new();
         for k in nodes {
@@ -85,17 +79,7 @@ impl Builder {
                 }
             }
         }
-        let logarithms: Vec<Value> = logarithms.into_iter().collect();
-        let below = self.nodes_below(&logarithms).into_iter();
-        let turned = below.filter_map(|k| match self.nodes[k] {
-            Node::Unary(UnaryOp::Sin | UnaryOp::Cos | UnaryOp::Tan, x) => Some(x),
-            _ => None,
-        });
-        let angles: BTreeSet<Value> = turned.collect();
-        Peaks {
-            logarithms,
-            angles: angles.into_iter().collect(),
-        }
+        logarithms.into_iter().collect()
     }
 
     /// Returns the distances from the bumps of a curve, each in widths of its bump and negative.
@@ -191,8 +175,8 @@ impl Builder {
     }
 }
 
-/// Returns the bumps of a curve: for each a curve that is zero over it and falls by one with each
-/// width beside it. None where the curve bends all the way, or hardly.
+/// Returns the bumps of a curve: for each a curve that rises to its middle by [`PER_WIDTH`] with
+/// each width, from one width beside it on. None where the curve bends all the way, or hardly.
 fn bumps(table: &dyn Table, order: u32) -> Vec<Arc<dyn Table>> {
     let knots = table.knots();
     let y: Vec<f64> = knots.iter().map(|&x| table.at(x, order)).collect();
@@ -220,8 +204,10 @@ fn bumps(table: &dyn Table, order: u32) -> Vec<Arc<dyn Table>> {
         let [(first, w0), .., (last, w1)] = group else {
             return None;
         };
-        let x = [first - w0, *first, *last, last + w1];
-        let tent = Piecewise::linear(&x, &[-1.0, 0.0, 0.0, -1.0]).ok()?;
+        let (width, middle) = (w0.min(*w1), 0.5 * (first + last));
+        let height = PER_WIDTH * (1.0 + (middle - first) / width);
+        let x = [first - width, middle, last + width];
+        let tent = Piecewise::linear(&x, &[0.0, height, 0.0]).ok()?;
         Some(Arc::new(tent) as Arc<dyn Table>)
     };
     groups.iter().take(MOST_BUMPS).filter_map(tent).collect()
@@ -242,7 +228,7 @@ mod tests {
         let bump = of(&way, &[0.0, 0.0, 5.0, 5.0, 0.0, 0.0]);
         assert_eq!(bump.len(), 1);
         let there = [4.0, 4.0015, 4.003, 4.013, 3.99].map(|x| bump[0].at(x, 0).round());
-        assert_eq!(there, [0.0, 0.0, 0.0, -10.0, -10.0]);
+        assert_eq!(there, [4.0, 10.0, 4.0, -36.0, -36.0]);
         let fine: Vec<f64> = (0..50).map(f64::from).collect();
         let waves: Vec<f64> = fine.iter().map(|x| (2.0 * x).sin()).collect();
         assert!(of(&fine, &waves).is_empty());
@@ -276,7 +262,7 @@ mod tests {
                 calm += 1;
                 let mut builder = Builder::new(Folding::Strict);
                 let outputs = program.record(&mut builder);
-                assert!(builder.peaks(&outputs).logarithms.is_empty(), "{text}");
+                assert!(builder.peaks(&outputs).is_empty(), "{text}");
             }
         }
         assert!(calm > 20, "{calm}");
@@ -288,7 +274,7 @@ mod tests {
         let x = builder.input(Input::Slot(0));
         let value = f(&mut builder, x);
         let peaks = builder.peaks(&[value]);
-        builder.finish_with_inputs(&peaks.logarithms, &[Input::Slot(0)])
+        builder.finish_with_inputs(&peaks, &[Input::Slot(0)])
     }
 
     #[test]
