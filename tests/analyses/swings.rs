@@ -413,3 +413,19 @@ fn errors_of_a_simulation_stay_in_the_next() {
     let after = said(&s).usual_bar;
     assert!(after > 0.5 * before, "{before:e} {after:e}");
 }
+
+/// What comes to rest is small at the only output that is asked for: its errors are measured beside all that it has done on the way,
+/// so that nothing is said which many outputs would not say.
+#[test]
+fn what_is_at_rest_at_the_only_output_has_errors_of_its_whole_way() {
+    for method in METHODS {
+        for error in [1e-3, 1e-5] {
+            for outputs in [1, 5, 40] {
+                let mut s = measuring(&oscillator("-12*VX(2,1)"), "VX(2,1)", method, error);
+                try_to(&mut s, Analysis::Dynamic, 6.0, outputs);
+                let told = s.run.record.warned();
+                assert!(told.is_empty(), "{method} {error:e} {outputs}: {told:?}");
+            }
+        }
+    }
+}

@@ -4,6 +4,8 @@
 use crate::running;
 
 use cognate::results::Status;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use running::{Analysis, Session, go, last, session_by, try_to};
 
 const METHODS: [&str; 3] = ["AUTO", "DOP853", "RADAU5"];
@@ -332,6 +334,45 @@ fn a_mass_lets_go_of_its_belt_within_a_long_step() {
                 let what = format!("{method} {request:e} beside {width} at {turning}");
                 assert!(off < request, "{what}: {off:e}");
             }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        rng_seed: RngSeed::Fixed(5),
+        cases: 40,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    /// A mass on a belt whose friction falls with the speed sticks, lets go where its acceleration begins at zero, and swings back. Less
+    /// that is asked for takes no more steps, as an event that a short step does not find is not looked for in long ones again and
+    /// again; and the balance of energy closes.
+    #[test]
+    fn a_mass_that_sticks_and_lets_go_takes_the_fewer_steps_the_less_is_asked_for(
+        mass in 0.5f64..2.0,
+        stiffness in 10.0f64..80.0,
+        belt in 0.2f64..1.5,
+        friction in 1.0f64..5.0,
+        falls in 0.1f64..0.5,
+        method in prop::sample::select(&METHODS[..]),
+    ) {
+        let slip = format!("VZ(2,1)-{belt:?}");
+        let force = format!(
+            "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, \
+             FUNCTION=-{stiffness:?}*DZ(2,1)-{friction:?}*SIGN(1,{slip})*(1-{falls:?}*TANH(ABS({slip})))\n"
+        );
+        let mut most = f64::INFINITY;
+        for request in [1e-6, 1e-4, 1e-3, 1e-2] {
+            let mut s = blocks_within(&[mass], &[0.0], &force, (method, request));
+            go(&mut s, Analysis::Dynamic, 4.0, 40);
+            let record = &s.run.record;
+            let steps = record.counts.steps as f64;
+            prop_assert!(steps <= 1.2 * most, "{method} {request:e}: {steps} steps, {most} before");
+            most = steps;
+            let off = record.energy.error();
+            prop_assert!(off < 0.05, "{method} {request:e}: the balance is off by {off}");
         }
     }
 }

@@ -53,8 +53,8 @@ const SAFETY_OF_PLACES: Safety = Safety {
 /// Largest bar, over the range of values that both runs have.
 const LARGEST_BAR: f64 = 2.0;
 
-/// Outputs from which on their range bounds a bar.
-const FEWEST_OUTPUTS: usize = 8;
+/// Outputs from which on their range says how large a channel is.
+pub const FEWEST_OUTPUTS: usize = 8;
 /// Range of a channel that moves, over the largest value of all channels of its unit.
 const LEAST_MOTION: f64 = 0.01;
 /// Least size of a channel for its relative bar, over the largest value of all of its unit: what

@@ -22,7 +22,7 @@ use super::phase::Phase;
 use super::simulate::Span;
 use super::{Accuracy, Session};
 use crate::analysis::accuracy::{
-    Comparison, LEAST_SIZE, Safety, companion_request, looser_request, safety,
+    Comparison, FEWEST_OUTPUTS, LEAST_SIZE, Safety, companion_request, looser_request, safety,
 };
 use crate::analysis::system::System;
 use crate::analysis::time::options::Options;
@@ -303,6 +303,7 @@ impl Session {
             true => &measured.sampled.times,
             false => &measured.sampled.wanted,
         };
+        let outputs = &with_places_between(outputs, span.start);
         let mut sampled = Sampled::of(&self.run, outputs);
         let (mut other, _) = self.integrated(
             (&mut system, None),
@@ -356,18 +357,22 @@ impl Session {
             shifts: &[],
         };
         let sampled = measured.sampled;
-        let sizes = sampled.sizes(&self.run);
+        let sizes = sampled.sizes(&self.run).into_iter();
+        let sizes = sizes.zip(other.sampled.sizes(&self.run));
         let accuracy = self.run.record.accuracy.get_or_insert_default();
         accuracy.companions.push(other.request);
         let columns = sampled.columns.iter().map(|&k| &self.run.columns[k]);
         let places = accuracy.places(columns);
         let both = sampled.values.iter().zip(&other.sampled.values);
-        for ((place, (own, others)), &of_unit) in places.into_iter().zip(both).zip(&sizes) {
+        for ((place, (own, others)), (of_unit, of_others)) in
+            places.into_iter().zip(both).zip(sizes)
+        {
+            let (of_unit, of_all) = (of_unit.max(of_others), largest(own).max(largest(others)));
             let own: Vec<f64> = pairs.iter().map(|[k, _]| own[*k]).collect();
             let others: Vec<f64> = pairs.iter().map(|[_, k]| others[*k]).collect();
             let found = comparison.bars(&own, &others, of_unit);
             let channel = &mut accuracy.channels[place];
-            let size = largest(&own).max(LEAST_SIZE * of_unit);
+            let size = of_all.max(LEAST_SIZE * of_unit);
             channel.see(&found.bars, size, found.lost_from);
         }
     }
@@ -394,6 +399,21 @@ impl Session {
     }
 }
 
+/// Returns outputs, and places between them where they are few: else nobody knows how large that is
+/// which is small at each of them.
+fn with_places_between(outputs: &[f64], start: f64) -> Vec<f64> {
+    let mut all = outputs.to_vec();
+    if let Some(&end) = outputs.last()
+        && outputs.len() < FEWEST_OUTPUTS
+    {
+        let place = |k: usize| start + (end - start) * k as f64 / FEWEST_OUTPUTS as f64;
+        all.extend((1..FEWEST_OUTPUTS).map(place));
+        all.sort_unstable_by(f64::total_cmp);
+        all.dedup();
+    }
+    all
+}
+
 /// Returns whether the steps of two integrations differ, so that their difference tells an error:
 /// where both make them as long as they can, both are off alike. An explicit method whose steps
 /// stability limits is better than its request, and below rounding no step is.
@@ -409,7 +429,7 @@ fn differ(own: &Trajectory, other: &Other) -> bool {
 fn are_near(own: &Sampled, other: &Sampled, sizes: &[f64]) -> bool {
     let pairs = pairs(&own.times, &other.times);
     let near = |((own, other), size): ((&Vec<f64>, &Vec<f64>), &f64)| {
-        let finite = own.iter().filter(|x| x.is_finite());
+        let finite = own.iter().chain(other.iter()).filter(|x| x.is_finite());
         let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
             (low.min(*x), high.max(*x))
         });

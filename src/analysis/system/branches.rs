@@ -261,12 +261,12 @@ impl Branches {
         (is_finite && strength.is_finite()).then_some(strength)
     }
 
-    /// Returns whether the numbers say the same branches as are held.
+    /// Returns whether the numbers say the same branches as are held: what is zero says none.
     pub(super) fn are_held_at(&mut self, numbers: &[f64]) -> bool {
         let mut values = std::mem::take(&mut self.values_aside);
         self.values(numbers, &mut values);
         let mut pairs = values.iter().zip(&self.sides);
-        let are_held = pairs.all(|(value, side)| value * side >= 0.0);
+        let are_held = pairs.all(|(value, side)| *side == 0.0 || value * side > 0.0);
         self.values_aside = values;
         are_held
     }

@@ -90,22 +90,33 @@ impl System {
         Some([values[0], values[1]])
     }
 
-    /// Returns the powers at a node of a step, if they are watched.
-    pub(in crate::analysis) fn powers(&mut self, [t0, t1]: [f64; 2], node: Node) -> Option<Powers> {
+    /// Returns the powers at a node of a step, if they are watched; `strictly`: and if it is on the
+    /// branches of the step, or can be moved there.
+    pub(in crate::analysis) fn powers(
+        &mut self,
+        [t0, t1]: [f64; 2],
+        node: Node,
+        strictly: bool,
+    ) -> Option<Powers> {
         if self.recorded.branches.is_sliding() {
             return self.aside(|system| system.mean_powers(node));
         }
         let mut state = std::mem::take(&mut self.stage);
-        let mut t = node.t;
+        let (mut t, mut is_held) = (node.t, false);
         for part in INWARDS {
             let inwards = part * (t1 - t0);
             let delta = (t0 + inwards - node.t).max(0.0) + (t1 - inwards - node.t).min(0.0);
             state.clear();
             state.extend(node.y.iter().zip(node.ydot).map(|(y, f)| y + delta * f));
             t = node.t + delta;
-            if delta == 0.0 || self.is_on_held_branch(t, &state) {
+            is_held = self.is_on_held_branch(t, &state);
+            if delta == 0.0 || is_held {
                 break;
             }
+        }
+        if strictly && !is_held {
+            self.stage = state;
+            return None;
         }
         let vdot = self.scene.layout.state(node.ydot).v;
         let powers = self.run_energy(t, &state, vdot).map(powers_of);

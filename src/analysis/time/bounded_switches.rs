@@ -51,9 +51,11 @@ const ROOM: f64 = 2.0;
 /// Bound of the way of a switch within a step, over what its values and slopes at the ends say that
 /// it passes, up to which these and the middle tell what it does: a wave has as much.
 const RESOLVED: f64 = 3.0;
-/// Part of a step that is short: the step ends where so much of it has been shown, and a stretch at
-/// whose end a switch has changed its side is divided no further where its rate has no bound.
-const SHORT: f64 = 0.01;
+/// Part of a step that is short: the step ends where so much of it has been shown, a stretch at
+/// whose end a switch has changed its side is divided no further where its rate has no bound, and
+/// where a short step does not find what a long one saw, the next one is no longer than it is short
+/// of.
+pub(super) const SHORT: f64 = 0.01;
 
 /// The time of a room in which no step lies.
 const NO_TIME: Interval = Interval { lo: 0.0, hi: -1.0 };

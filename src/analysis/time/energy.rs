@@ -278,14 +278,22 @@ impl Accountant {
         let mut of_step = [0.0; 4];
         let visited = match turns {
             Turns::Few => {
-                let mut visit = weigher(ends, &mut of_step);
-                method.quadrature(system, ends, &mut self.work, &mut visit)
+                let visit = &mut weigher(ends, &mut of_step, true);
+                method.quadrature(system, ends, &mut self.work, visit)
             }
             Turns::Many(times) => self.by_kronrod(system, method, (ends, &times), &mut of_step),
             Turns::Unknown => Err(NOT_KNOWN),
         };
         if visited.is_err() {
             return [f64::NAN; 4];
+        }
+        // a node on another branch: others are further within the step
+        if of_step.iter().any(|work| work.is_nan()) {
+            of_step = [0.0; 4];
+            let visited = self.by_kronrod(system, method, (ends, &[ends[1]]), &mut of_step);
+            if visited.is_err() {
+                return [f64::NAN; 4];
+            }
         }
         if !few || system.scene.motions.is_empty() {
             return of_step;
@@ -324,16 +332,22 @@ impl Accountant {
         let mut from = ends[0];
         times.iter().try_for_each(|&to| {
             let piece = [std::mem::replace(&mut from, to), to];
-            let mut visit = weigher(ends, works);
+            let mut visit = weigher(ends, works, false);
             over_interpolant(method, system, piece, &rule, &mut self.work, &mut visit)
         })
     }
 }
 
-/// Returns what adds the powers at a node within a step to works.
-fn weigher(ends: [f64; 2], works: &mut Powers) -> impl FnMut(&mut System, Node<'_>) {
+/// Returns what adds the powers at a node within a step to works; no numbers where `strictly` they
+/// are not those of the branches of the step.
+fn weigher(
+    ends: [f64; 2],
+    works: &mut Powers,
+    strictly: bool,
+) -> impl FnMut(&mut System, Node<'_>) {
     move |system, node| {
-        let powers = system.powers(ends, node).unwrap_or([f64::NAN; 4]);
+        let powers = system.powers(ends, node, strictly);
+        let powers = powers.unwrap_or([f64::NAN; 4]);
         for (work, power) in works.iter_mut().zip(powers) {
             *work += node.weight * power;
         }

@@ -286,6 +286,7 @@ impl<'a> Leg<'a> {
     /// held, and they were let go.
     fn step(&mut self, method: &mut dyn Method<System>) -> Result<Option<Step>, Finished> {
         let horizon = self.horizon(method);
+        let horizon = horizon.min(method.t() + self.switches.longest_step());
         let limit = std::mem::replace(&mut self.landing, self.limits.end).min(horizon);
         self.limit = limit;
         if !self.before.is_empty() {

@@ -33,7 +33,7 @@
 
 use crate::analysis::system::System;
 use crate::analysis::system::bounds::What;
-use crate::analysis::time::bounded_switches::{Asked, BoundedSwitches, Seen, Whole};
+use crate::analysis::time::bounded_switches::{Asked, BoundedSwitches, SHORT, Seen, Whole};
 use crate::analysis::time::chatter::Chatter;
 use crate::numeric::event::{Locator, sign};
 use crate::numeric::subdivision::Shown;
@@ -136,6 +136,8 @@ pub struct Switches {
     probe: Vec<f64>,
     /// where the step under way is to end
     landing: Option<f64>,
+    /// longest step whose interpolant is to be trusted, in s
+    trusted: f64,
     /// change of each value within the longer step that said so   (n)
     swings: Vec<f64>,
     redone: usize,
@@ -173,6 +175,7 @@ impl Switches {
             middle: vec![0.0; n],
             probe: vec![0.0; size],
             landing: None,
+            trusted: f64::INFINITY,
             swings: vec![0.0; n],
             redone: 0,
             burst: 0,
@@ -373,6 +376,11 @@ impl Switches {
         }
     }
 
+    /// Returns how long the next step may be.
+    pub fn longest_step(&self) -> f64 {
+        self.trusted
+    }
+
     /// Judges the step just taken: whether a branch ended in it.
     pub fn judge(
         &mut self,
@@ -387,10 +395,15 @@ impl Switches {
             return self.judge_at_rest(step);
         }
         // far from all switches, or at one that was to be met
-        let landed = self.landing.take() == Some(step.t1);
+        let was_to_land = self.landing.take() == Some(step.t1);
         let (y, ydot) = (method.y(), method.ydot());
         self.slopes(system, step.t1, y, ydot, 1e-4 * step.h);
-        let landed = landed && self.has_landed(step);
+        let landed = was_to_land && self.has_landed(step);
+        // the longer step saw what is not there: the next ones grow from this one
+        self.trusted = match was_to_land && !landed {
+            true => step.h / SHORT,
+            false => self.trusted / SHORT,
+        };
         let named = match self.look_at_bounded(system, method, step, landed) {
             Seen::Nothing | Seen::Unknown => None,
             Seen::Look(named) => Some(named),
