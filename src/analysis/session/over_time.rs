@@ -337,7 +337,8 @@ impl Session {
         (error, off): (f64, Option<f64>),
     ) {
         let (below, steps) = (trajectory.stats.below_rounding, trajectory.stats.steps);
-        if below > 0 && off.is_none_or(|off| off > error) {
+        let sets_error = below as f64 > SETS_STEPS * steps as f64;
+        if sets_error && off.is_none_or(|off| off > error) {
             self.warn(RunWarning::BelowRounding {
                 error,
                 below,
