@@ -6,8 +6,8 @@
 //! and methods read and write them as they are; [`Layout`] says where a number stands, [`State`] is
 //! y by its blocks, and [`Instant`] is all of the row by its blocks.
 //!
-//! Some programs read more, after these numbers: with branches held, or as implicit equations.
-//! [`LongRow`] and [`ImplicitLayout`] say where that stands.
+//! Some programs read more, after these numbers, as with branches held: [`LongRow`] says where that
+//! stands.
 
 use crate::expr::program::Input;
 use std::ops::Range;
@@ -64,8 +64,8 @@ pub struct Instant<S> {
 
 /// A longer row: `numbers | more | sides`.
 ///
-/// With branches held, `more` are the unknowns of all loops; for implicit equations ẏ and the
-/// multipliers. Programs that hold no branches read the row without its sides.
+/// With branches held, `more` are the unknowns of all loops. Programs that hold no branches read
+/// the row without its sides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LongRow {
     /// sizes of the blocks of the numbers
@@ -175,13 +175,12 @@ impl Layout {
     pub fn n_upstream(&self) -> usize {
         self.n_x - self.n_downstream
     }
-    /// Returns y without what may stand after it: states downstream, or the multipliers of a method
-    /// for implicit equations.
-    pub fn without_multipliers<'y, T>(&self, y: &'y [T]) -> &'y [T] {
+    /// Returns y without the states downstream, which may stand after it.
+    pub fn upstream<'y, T>(&self, y: &'y [T]) -> &'y [T] {
         &y[..self.n_y()]
     }
-    /// Splits y, or what stands in its order, into its blocks; further numbers after these, such as
-    /// multipliers, are left aside.
+    /// Splits y, or what stands in its order, into its blocks; further numbers after these are left
+    /// aside.
     pub fn state<'y, T>(&self, y: &'y [T]) -> State<&'y [T]> {
         let (q, rest) = y.split_at(self.n_q);
         let (v, rest) = rest.split_at(self.n_v);
@@ -217,10 +216,10 @@ impl Layout {
             external: numbers[self.external()].to_vec(),
         }
     }
-    /// Puts time and state into a row of numbers; multipliers after the state are of no concern.
+    /// Puts time and state into a row of numbers.
     pub fn set_state(&self, numbers: &mut [f64], t: f64, y: &[f64]) {
         numbers[Self::TIME] = t;
-        numbers[self.y()].copy_from_slice(self.without_multipliers(y));
+        numbers[self.y()].copy_from_slice(self.upstream(y));
     }
     /// Splits what a projection changes: positions by a tangent (n_v), velocities (n_v), then
     /// states of contacts on curves.

@@ -403,57 +403,48 @@ fn switching_of_loops(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Un
     }))
 }
 
-/// Records what `f` computes from the instant and `n_more` further numbers with every branch as the
-/// sign of its switch says: reads these numbers, then one sign per switch, after the layout's; `f`
-/// gives two lists, each makes a program. `None`: branches cannot be held. The switches are those
-/// of [`switching`], in their order, because the rates are recorded before anything else.
-pub fn held_with<F>(
-    scene: Configured<'_>,
-    switching: &Switching,
-    n_more: usize,
-    f: F,
-) -> Option<[Program; 2]>
+/// Records what `f` computes from the instant with every branch as the sign of its switch says:
+/// reads one sign per switch after the layout's numbers. `None`: branches cannot be held. The
+/// switches are those of [`switching`], in their order, because the rates are recorded before
+/// anything else.
+fn held_with<F>(scene: Configured<'_>, switching: &Switching, f: F) -> Option<Program>
 where
-    F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> [Vec<Sym<'b>>; 2],
+    F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
 {
     switching.held.as_ref().filter(|_| scene.loops.is_empty())?;
     let n_switches = switching.switches.n_outputs();
     let row = LongRow {
         numbers: scene.layout,
-        n_more,
+        n_more: 0,
         n_sides: n_switches,
     };
-    let (n_first, n_all, same) = (Cell::new(0), Cell::new(0), Cell::new(false));
+    let (n_wanted, same) = (Cell::new(0), Cell::new(false));
     let (mut programs, complaints) = recorded(
         scene,
-        n_more + n_switches,
+        n_switches,
         false,
         false,
-        |at, more| {
+        |at, _| {
             let mut out = rate(at);
             out.extend(sources(at, &scene));
-            let [first, second] = f(at, &more[..n_more]);
-            n_first.set(first.len());
-            n_all.set(first.len() + second.len());
-            out.extend(first);
-            out.extend(second);
+            let wanted = f(at);
+            n_wanted.set(wanted.len());
+            out.extend(wanted);
             out
         },
         |builder, values| {
-            let (known, wanted) = values.split_at(values.len() - n_all.get());
+            let (known, wanted) = values.split_at(values.len() - n_wanted.get());
             let side = |k: usize| Input::Slot(row.side_at(k) as u32);
             let sources = &known[scene.layout.n_rates()..];
             let (held, switches) = builder.held(wanted, sources, side);
             same.set(switches.len() == n_switches);
-            let (one, other) = held.split_at(n_first.get());
-            vec![one.to_vec(), other.to_vec()]
+            vec![held]
         },
     );
     if !same.get() || !complaints.is_empty() {
         return None;
     }
-    let second = programs.pop()?;
-    Some([programs.pop()?, second])
+    programs.pop()
 }
 
 /// Records the rates of the states downstream of the mechanism; then, where they change branch with
@@ -470,12 +461,9 @@ pub fn downstream(
     let has_branches = recorder.end(&rates, |builder, values| {
         !builder.switching(&values).is_empty()
     })?;
-    let held = switching.filter(|_| has_branches).and_then(|switching| {
-        held_with(recorder.scene(), switching, 0, |at, _| {
-            [at.downstream_rates(), Vec::new()]
-        })
-    });
-    let held = held.map(|[rates, _]| rates);
+    let held = switching
+        .filter(|_| has_branches)
+        .and_then(|switching| held_with(recorder.scene(), switching, |at| at.downstream_rates()));
     Ok((recorder.program(&rates)?, held))
 }
 

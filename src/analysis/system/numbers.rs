@@ -58,16 +58,14 @@ impl System {
         rows
     }
 
-    /// Returns all numbers with time and state put into them; multipliers after the state are of no
-    /// concern.
+    /// Returns all numbers with time and state put into them.
     pub(in crate::analysis) fn numbers_at(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut numbers = self.numbers.clone();
         self.scene.layout.set_state(&mut numbers, t, y);
         numbers
     }
 
-    /// Takes over time and state, and solves the loops there; multipliers after the state are of no
-    /// concern.
+    /// Takes over time and state, and solves the loops there.
     #[inline]
     pub(in crate::analysis) fn set(&mut self, t: f64, y: &[f64]) {
         self.scene.layout.set_state(&mut self.numbers, t, y);

@@ -112,7 +112,7 @@ impl Leg<'_> {
         let l = self.system.scene.layout;
         let node = |t: f64, y: &[f64]| Node {
             t,
-            y: l.without_multipliers(y).to_vec(),
+            y: l.upstream(y).to_vec(),
         };
         let pieces = (turn / TURN_OF_PIECE).ceil().clamp(1.0, MAX_PIECES) as usize;
         let mut nodes = vec![node(step.t0, &self.before)];
