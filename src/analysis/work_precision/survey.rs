@@ -3,6 +3,7 @@
 use super::attempt::{Attempt, attempt};
 use super::distance::{self, Candidate, Table};
 use super::{Cost, Error, Follow, LeftOut, Outcome, Question, Reason, Reference, Row, Study};
+use crate::analysis::time::options::method_named;
 use crate::arrange::Arrange;
 use crate::diagnostic;
 use crate::numeric::METHODS;
@@ -97,7 +98,13 @@ impl Survey<'_> {
     /// # Errors
     /// The model cannot be run.
     fn begin(&mut self, request: f64) -> Result<(), diagnostic::Error> {
-        let names = &self.question.methods;
+        // several names may stand for one method
+        let mut names: Vec<String> = Vec::new();
+        for name in self.question.methods.iter().map(|name| method_named(name)) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
         let first = names.first().map_or("AUTO", String::as_str);
         self.watch.begins((first, request), 0.0);
         let attempt = attempt(self.question, (first, request), self.limit(), self.watch)?;
@@ -372,6 +379,17 @@ mod tests {
         let row = study.recommended(1e-4).expect("a recommendation");
         assert!(row.cost.counts.steps > 0 && row.cost.profile.is_some());
         assert!(study.recommended(1e-15).is_none(), "below the trust");
+    }
+
+    #[test]
+    fn names_that_stand_for_one_method_are_one_series_with_its_name() {
+        let study = study(60.0, &["HHT", "radau5", "GSTIFF"], &mut Unwatched);
+        assert!(study.rows.iter().all(|row| row.method == "RADAU5"));
+        let requests: Vec<f64> = study.rows.iter().map(|row| row.request).collect();
+        assert!(
+            requests.windows(2).all(|pair| pair[0] > pair[1]),
+            "{requests:?}"
+        );
     }
 
     #[test]
