@@ -28,16 +28,34 @@ const MAX_LEVELS: usize = 32;
 /// Steps that are repeated at one time because of peaks, at most.
 const MAX_REPEATED: usize = 20;
 
-/// Narrow peaks within the step under way.
+/// The logarithms at the ends of a step, and what is asked of them.
 #[derive(Debug)]
-pub(super) struct PeaksWithin {
-    watched: BoundedSwitches,
-    /// which logarithms are asked for: they are to stay below their levels   (n)
+struct Ends {
+    /// which are asked for: they are to stay below their levels   (n)
     sides: Vec<i8>,
     levels: Vec<f64>,
     /// values at the beginning of the step and at its end   (n each)
     before: Vec<f64>,
     after: Vec<f64>,
+}
+
+impl Ends {
+    fn asked<'a>(&'a self, step: &'a Step) -> Asked<'a> {
+        Asked {
+            step,
+            sides: &self.sides,
+            levels: &self.levels,
+            values: [&self.before, &self.after],
+            slopes: None,
+        }
+    }
+}
+
+/// Narrow peaks within the step under way.
+#[derive(Debug)]
+pub(super) struct PeaksWithin {
+    watched: BoundedSwitches,
+    ends: Ends,
     /// the largest value of each whose peak is being crossed; else −∞   (n)
     tops: Vec<f64>,
     /// how often in a row the step was repeated
@@ -52,10 +70,12 @@ impl PeaksWithin {
         let n = system.recorded.peaks.len();
         Self {
             watched: BoundedSwitches::new(system, What::Peaks, n),
-            sides: vec![0; n],
-            levels: vec![0.0; n],
-            before: vec![0.0; n],
-            after: vec![0.0; n],
+            ends: Ends {
+                sides: vec![0; n],
+                levels: vec![0.0; n],
+                before: vec![0.0; n],
+                after: vec![0.0; n],
+            },
             tops: vec![f64::NEG_INFINITY; n],
             repeated: 0,
             shortest: SHORTEST_STEP * duration,
@@ -64,22 +84,22 @@ impl PeaksWithin {
 
     /// Looks at them where a method begins.
     pub fn begin(&mut self, system: &mut System, method: &dyn Method<System>) {
-        if self.sides.is_empty() {
+        if self.ends.sides.is_empty() {
             return;
         }
-        system.watch(What::Peaks, (method.t(), method.y()), &mut self.after);
+        system.watch(What::Peaks, (method.t(), method.y()), &mut self.ends.after);
         self.keep(method);
     }
 
     /// Makes the end of a step the beginning of the next.
     pub fn keep(&mut self, method: &dyn Method<System>) {
-        if self.sides.is_empty() {
+        if self.ends.sides.is_empty() {
             return;
         }
         self.repeated = 0;
         self.watched.begin(method.y(), method.ydot());
-        std::mem::swap(&mut self.before, &mut self.after);
-        for (top, &now) in self.tops.iter_mut().zip(&self.before) {
+        std::mem::swap(&mut self.ends.before, &mut self.ends.after);
+        for (top, &now) in self.tops.iter_mut().zip(&self.ends.before) {
             *top = match *top > f64::NEG_INFINITY && now > *top - DEPTH {
                 true => top.max(now),
                 false => f64::NEG_INFINITY,
@@ -94,32 +114,27 @@ impl PeaksWithin {
         method: &mut dyn Method<System>,
         step: &Step,
     ) -> Option<f64> {
-        if self.sides.is_empty() {
+        if self.ends.sides.is_empty() {
             return None;
         }
-        system.watch(What::Peaks, (step.t1, method.y()), &mut self.after);
+        system.watch(What::Peaks, (step.t1, method.y()), &mut self.ends.after);
         if self.repeated >= MAX_REPEATED || step.h <= self.shortest {
             return None;
         }
-        let ends = self.before.iter().zip(&self.after);
-        for ((level, side), (a, b)) in self.levels.iter_mut().zip(&mut self.sides).zip(ends) {
+        let ends = &mut self.ends;
+        let asked = ends.levels.iter_mut().zip(&mut ends.sides);
+        for ((level, side), (a, b)) in asked.zip(ends.before.iter().zip(&ends.after)) {
             *level = a.max(*b).max(NEGLIGIBLE) + HIDDEN;
             // what has no value is no peak
             *side = -i8::from(level.is_finite() && !a.is_nan() && !b.is_nan());
         }
-        let asked = Asked {
-            step,
-            sides: &self.sides,
-            levels: &self.levels,
-            values: [&self.before, &self.after],
-            slopes: None,
-        };
+        let asked = self.ends.asked(step);
         let is_free = self.watched.are_far(system, method, asked)
             || self.watched.look_at_whole(system, method, asked) == Whole::Free;
         let falls = |&k: &usize| {
-            self.tops[k] > f64::NEG_INFINITY && self.after[k] < self.before[k] - HIDDEN
+            self.tops[k] > f64::NEG_INFINITY && self.ends.after[k] < self.ends.before[k] - HIDDEN
         };
-        let falling: Vec<usize> = (0..self.sides.len()).filter(falls).collect();
+        let falling: Vec<usize> = (0..self.ends.sides.len()).filter(falls).collect();
         if is_free && falling.is_empty() {
             return None;
         }
@@ -129,7 +144,7 @@ impl PeaksWithin {
         if !is_free {
             for k in self.watched.open().to_vec() {
                 if let Some(found) = self.approach(system, method, (step, k)) {
-                    self.tops[k] = self.tops[k].max(self.before[k]);
+                    self.tops[k] = self.tops[k].max(self.ends.before[k]);
                     at = at.min(found);
                 }
             }
@@ -150,14 +165,8 @@ impl PeaksWithin {
         method: &mut dyn Method<System>,
         (step, k): (&Step, usize),
     ) -> f64 {
-        self.levels[k] = self.before[k] - HIDDEN;
-        let asked = Asked {
-            step,
-            sides: &self.sides,
-            levels: &self.levels,
-            values: [&self.before, &self.after],
-            slopes: None,
-        };
+        self.ends.levels[k] = self.ends.before[k] - HIDDEN;
+        let asked = self.ends.asked(step);
         self.watched.forget_values();
         let [mut a, mut b] = [step.t0, step.t1];
         while b - a > shortest(step) {
@@ -178,17 +187,17 @@ impl PeaksWithin {
         method: &mut dyn Method<System>,
         (step, k): (&Step, usize),
     ) -> Option<f64> {
-        let stair = self.levels[k];
+        let stair = self.ends.levels[k];
         let mut found = self.first_above(system, method, (step, k))?;
         let mut last = found;
         for _ in 0..MAX_LEVELS {
-            self.levels[k] += DEPTH;
+            self.ends.levels[k] += DEPTH;
             let Some(higher) = self.first_above(system, method, (step, k)) else {
                 break;
             };
             (found, last) = (last, higher);
         }
-        self.levels[k] = stair;
+        self.ends.levels[k] = stair;
         Some(found)
     }
 
@@ -199,13 +208,7 @@ impl PeaksWithin {
         method: &mut dyn Method<System>,
         (step, k): (&Step, usize),
     ) -> Option<f64> {
-        let asked = Asked {
-            step,
-            sides: &self.sides,
-            levels: &self.levels,
-            values: [&self.before, &self.after],
-            slopes: None,
-        };
+        let asked = self.ends.asked(step);
         let watched = &mut self.watched;
         let found = watched.first_of_one(system, method, asked, (k, step.t1));
         let Some([mut a, mut b]) = found.event else {
