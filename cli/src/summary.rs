@@ -2,6 +2,7 @@
 //! a picture of the results.
 
 use super::table::Table;
+use cognate::analysis::warning::OPEN_REACTION;
 use cognate::diagnostic::counted;
 use cognate::disk;
 use cognate::report::{Plot, svg::panels};
@@ -207,7 +208,8 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
             simulation.worst.join(", ")
         );
     }
-    text += &redundancy(&r.redundant);
+    let is_read = r.warnings.iter().any(|w| w.code == OPEN_REACTION);
+    text += &redundancy(&r.redundant, is_read);
     for line in warnings(&r.warnings) {
         text += &format!("warning: {line}\n");
     }
@@ -220,8 +222,14 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
     text
 }
 
-/// Tells which equations were left out, and what that means for reactions.
-fn redundancy(redundant: &[String]) -> String {
+/// Tells which equations were left out, and what that means for reactions, and for the motion where
+/// loads read one of those (`is_read`).
+fn redundancy(redundant: &[String], is_read: bool) -> String {
+    let same = if is_read {
+        ""
+    } else {
+        "the motion is the same, but "
+    };
     let Some(first) = redundant.first() else {
         return String::new();
     };
@@ -239,8 +247,8 @@ fn redundancy(redundant: &[String]) -> String {
         ),
     };
     format!(
-        "redundant: {what}; the motion is the same, but reactions of these joints are not unique, \
-         and the smallest are given\n"
+        "redundant: {what}; {same}reactions of these joints are not unique, and the smallest are \
+         given\n"
     )
 }
 
@@ -422,17 +430,17 @@ mod tests {
 
     #[test]
     fn reactions_that_are_not_unique_are_told() {
-        assert_eq!(redundancy(&[]), "");
-        let one = redundancy(&["JOINT/2 Zi.Xj".into()]);
+        assert_eq!(redundancy(&[], false), "");
+        let one = redundancy(&["JOINT/2 Zi.Xj".into()], false);
         assert!(
             one.contains("JOINT/2 Zi.Xj follows") && one.contains("not unique"),
             "{one}"
         );
         let many: Vec<String> = (1..6).map(|k| format!("JOINT/{k} Zi.Xj")).collect();
         assert!(
-            redundancy(&many).contains("and 2 more"),
+            redundancy(&many, false).contains("and 2 more"),
             "{}",
-            redundancy(&many)
+            redundancy(&many, false)
         );
     }
 

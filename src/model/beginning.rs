@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 /// A quantity that has an initial value. Lengths in model units, angles in rad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InitialQuantity {
-    /// a variable of a joint, by its place in the row of the table of joints
+    /// a variable of a joint, by its place in the row of the table of joints; of a ball the angle
+    /// between the axes x, y or z of its markers
     Variable(usize),
     /// the rate of a variable of a joint
     VariableRate(usize),
@@ -45,12 +46,19 @@ const VARIABLE_RATES: [(&str, &str); 6] = [
     ("ANGLE_2", "ANGLE_2_RATE"),
 ];
 
+/// Names of the angles between the axes of a ball's markers.
+pub const BALL: [&str; 3] = ["X", "Y", "Z"];
+
 /// Returns the quantities of a kind of element with their names; `joint`: the kind of the joint.
 fn quantities(kind: ElementKind, joint: Option<JointKind>) -> Vec<(&'static str, InitialQuantity)> {
     if kind == ElementKind::Marker {
         let places = PLACES.into_iter().zip((0..).map(InitialQuantity::Place));
         let rates = RATES.into_iter().zip((0..).map(InitialQuantity::Rate));
         return places.chain(rates).collect();
+    }
+    if joint.is_some_and(JointKind::is_ball) {
+        let angles = BALL.into_iter().zip((0..).map(InitialQuantity::Variable));
+        return angles.collect();
     }
     let variables = joint.map_or(&[][..], |kind| kind.row().variables);
     let named = variables.iter().enumerate().flat_map(|(k, (name, _))| {
@@ -88,10 +96,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_variable_of_every_joint_has_a_rate() {
+    fn every_variable_of_every_joint_but_a_ball_has_a_rate() {
         for kind in JointKind::ALL {
             let all = quantities(ElementKind::Joint, Some(kind));
-            assert_eq!(all.len(), 2 * kind.row().variables.len(), "{kind:?}");
+            let n_variables = kind.row().variables.len();
+            let expected = if kind.is_ball() { 3 } else { 2 * n_variables };
+            assert_eq!(all.len(), expected, "{kind:?}");
         }
     }
 }

@@ -25,7 +25,7 @@ mod system;
 mod text;
 pub mod units;
 
-pub use beginning::{Beginning, InitialQuantity};
+pub use beginning::{BALL, Beginning, InitialQuantity};
 pub use body::*;
 pub use constraint::*;
 pub use element::{Element, ElementId, ElementKind, Family, Named};

@@ -12,7 +12,9 @@
 
 /// Sweeps per eigenvalue, at most.
 const MOST_SWEEPS: usize = 60;
-/// Sweeps after which shifts of another size are tried, in case those at hand go round in circles.
+/// Sweeps after which shifts of another size are tried, in case those at hand go round in circles;
+/// and what is left on the subdiagonal is compared with the matrix, as equal eigenvalues let it get
+/// no smaller than that.
 const SWEEPS_PER_ODD_SHIFT: usize = 10;
 
 /// A square matrix, by rows.
@@ -23,16 +25,20 @@ struct Matrix<'a> {
 
 /// Finds the eigenvalues of a square matrix of `n` rows, one behind the other, which is lost: (real
 /// part, imaginary part) in no particular order. `None`: they were not found, as where an entry is
-/// not finite.
+/// not finite. Small ones of a balanced matrix keep their digits beside large ones.
 pub fn eigenvalues(values: &mut [f64], n: usize) -> Option<Vec<(f64, f64)>> {
     let mut a = Matrix { values, n };
     a.eliminate_below();
-    // entries below are rounding, as equal eigenvalues let them grow no smaller than that
     let largest = a.values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let rounding = n as f64 * f64::EPSILON * largest;
     let mut found = Vec::with_capacity(n);
     let (mut high, mut sweeps) = (n, 0);
     while high > 0 {
+        let rounding = if sweeps < SWEEPS_PER_ODD_SHIFT {
+            0.0
+        } else {
+            rounding
+        };
         let low = a.window_of(high, rounding);
         match high - low {
             1 => found.push((a.at(low, low), 0.0)),
@@ -94,9 +100,14 @@ impl Matrix<'_> {
     }
 
     /// Returns the first row of the window that ends before the row `high`: the entry beside it on
-    /// the subdiagonal is no more than `rounding`.
+    /// the subdiagonal is rounding of the two eigenvalues that it parts, or no more than `rounding`.
     fn window_of(&self, high: usize, rounding: f64) -> usize {
-        let is_apart = |&low: &usize| low == 0 || self.at(low, low - 1).abs() <= rounding;
+        let is_apart = |&low: &usize| {
+            low == 0 || {
+                let beside = self.at(low - 1, low - 1).abs() + self.at(low, low).abs();
+                self.at(low, low - 1).abs() <= rounding.max(f64::EPSILON * beside)
+            }
+        };
         (0..high).rev().find(is_apart).unwrap_or(0)
     }
 
@@ -230,6 +241,39 @@ mod tests {
                 assert!(all.clone().all(|z| (z.0 - expected).hypot(z.1) < 1e-6));
             }
         }
+    }
+
+    proptest! {
+        /// Small motions of what spins, `ẍ = G ẋ + K x` with a skew G and a symmetric K, have
+        /// eigenvalues at which `A − λ` is singular, slow ones beside fast ones as well.
+        #[test]
+        fn what_spins_has_eigenvalues(
+            n in 1usize..5, spin in -3.0f64..3.0, numbers in proptest::collection::vec(-1.0f64..1.0, 32),
+        ) {
+            let at = |i: usize, j: usize| numbers[at_pair(i, j)];
+            let sign = |i: usize, j: usize| f64::from(u8::from(i < j)) - f64::from(u8::from(i > j));
+            let speed = 10f64.powf(spin);
+            let entry = |i: usize, j: usize| match (i < n, j < n) {
+                (true, _) => f64::from(u8::from(j == i + n)),
+                (false, true) => at(i - n, j),
+                (false, false) => speed * sign(i - n, j - n) * numbers[16 + at_pair(i - n, j - n)],
+            };
+            let a = nalgebra::DMatrix::from_fn(2 * n, 2 * n, entry);
+            let rows = (0..2 * n).map(|i| a.row(i).iter().copied().collect()).collect();
+            let found = of(rows).unwrap();
+            prop_assert_eq!(found.len(), 2 * n);
+            for (re, im) in found {
+                let mut shifted = a.map(|x| nalgebra::Complex::new(x, 0.0));
+                (0..2 * n).for_each(|k| shifted[(k, k)] -= nalgebra::Complex::new(re, im));
+                let sizes = shifted.singular_values();
+                prop_assert!(sizes.min() < 1e-12 * a.norm().max(1.0), "{re} {im} {}", sizes.min());
+            }
+        }
+    }
+
+    /// The place of a pair in a list, whatever its order.
+    fn at_pair(i: usize, j: usize) -> usize {
+        4 * i.min(j) + i.max(j)
     }
 
     proptest! {

@@ -304,6 +304,12 @@ impl JointKind {
     pub const fn displacements(self) -> Displacements {
         self.row().displacements
     }
+
+    /// Returns whether it turns about a point: it has no angle of its own, and results show those
+    /// between the axes of its markers.
+    pub const fn is_ball(self) -> bool {
+        matches!(self, Self::Spherical | Self::Convel)
+    }
 }
 
 /// A row of the table of primitives.

@@ -52,8 +52,6 @@ pub struct Options {
     pub shells: Arc<BTreeMap<u32, Result<Shell, String>>>,
 }
 
-/// Part of the distance from the origin below which an extent is rounding.
-const EXTENT_OF_ROUNDING: f64 = 1e-13;
 /// Extents that make a typical length of a motion, where the origin is not nearer than that: a body
 /// may be small beside its way.
 const TYPICAL_EXTENTS: f64 = 100.0;
@@ -280,7 +278,7 @@ impl<'m> Builder<'m> {
         let reach = reach.chain(arms).filter(|x| x.is_finite());
         let reach = reach.fold(0.0, f64::max);
         let reach = if reach > 0.0 { reach } else { 1.0 };
-        let [diameter, gyration] = self.extents(reach);
+        let [diameter, gyration] = self.extents();
         let size = if diameter > 0.0 { diameter } else { gyration };
         let extent = diameter.max(gyration);
         let s = &mut self.scene;
@@ -293,29 +291,15 @@ impl<'m> Builder<'m> {
 
     /// Returns the diameter of what moves, as the dataset places it, and the largest radius of
     /// gyration, 0 where there is none: moving and turning the whole model does not change them.
-    /// `reach`: how far from the origin it is.
-    fn extents(&self, reach: f64) -> [f64; 2] {
+    fn extents(&self) -> [f64; 2] {
         let s = &self.scene;
-        let points = s.markers.iter().filter_map(|m| {
-            let part = &s.parts[m.part?];
-            let in_part = part.frame.inverse().point(m.frame.position);
-            Some(part.initial.point(in_part))
-        });
-        let points = points.filter(|p| p.norm().is_finite());
-        let points: Vec<Vec3<f64>> = points.collect();
-        // about the middle, so that a model that is turned keeps its size
-        let share = 1.0 / points.len().max(1) as f64;
-        let middle = (points.iter()).fold(Vec3::zero(), |sum, p| sum + p.times(share));
-        let farthest = points.iter().map(|p| (*p - middle).norm());
-        let diameter = 2.0 * farthest.fold(0.0, f64::max);
-        // the rounding of places far away is no extent
-        let noise = EXTENT_OF_ROUNDING * reach;
+        let diameter = s.diameter(|_| true);
         let gyration = self.model.parts.values().map(|part| {
             let largest = part.ip[..3].iter().fold(0.0_f64, |m, i| m.max(*i));
             (largest / part.mass).sqrt()
         });
         let gyration = gyration.filter(|r| r.is_finite()).fold(0.0, f64::max);
-        [if diameter > noise { diameter } else { 0.0 }, gyration]
+        [diameter, gyration]
     }
 
     /// Unknowns that functions define through each other.

@@ -89,7 +89,12 @@ pub(super) fn find(
     if scene.loops.is_empty() {
         return Ok(());
     }
-    scene.loops_linear = linear(scene.within(&undecided))?;
+    scene.loops_linear = linear(scene.within(&undecided))? && {
+        // assembly may leave rows out: what they exert then reads loads that it does not read here
+        let mut left_out = undecided;
+        left_out.active.fill(false);
+        scene.rows.is_empty() || linear(scene.within(&left_out))?
+    };
     scene.layout.n_loops = if scene.loops_linear {
         0
     } else {

@@ -59,6 +59,20 @@ impl Mover {
         self.normalize(q);
     }
 
+    /// Takes over the positions of which a velocity is not zero.
+    pub fn take_over(&self, q: &mut [f64], moved: &[f64], change: &[f64]) {
+        for &(k, v) in &self.simple {
+            if change[v] != 0.0 {
+                q[k] = moved[k];
+            }
+        }
+        for &(k, v) in &self.balls {
+            if change[v..v + 3].iter().any(|x| *x != 0.0) {
+                q[k..k + 4].copy_from_slice(&moved[k..k + 4]);
+            }
+        }
+    }
+
     /// Returns the changes of positions along each velocity: (velocity, position, slope), by
     /// velocities.
     pub fn tangents(&self, q: &[f64]) -> Vec<(usize, usize, f64)> {

@@ -1,17 +1,81 @@
 //! Scales of rows: residuals of lengths, angles and formulas are compared as parts of one.
 
 use super::{RowKind, Scene};
+use crate::space::Vec3;
+
+/// Part of the distance from the origin below which a diameter is its rounding.
+const EXTENT_OF_ROUNDING: f64 = 1e-13;
 
 impl Scene {
     /// Returns the residual of a row that counts as one: the size of the mechanism for lengths, a
     /// radian for angles.
     pub fn row_scale(&self, r: usize) -> f64 {
+        self.row_scale_at(r, self.length)
+    }
+
+    /// Returns the same for a mechanism of this size.
+    pub fn row_scale_at(&self, r: usize, size: f64) -> f64 {
         match &self.rows[r].kind {
-            RowKind::Markers { law, .. } if law.is_length() => self.length,
+            RowKind::Markers { law, .. } if law.is_length() => size,
             RowKind::Markers { .. } => 1.0,
-            RowKind::Displacements(sum) => sum.scale(self.length),
+            RowKind::Displacements(sum) => sum.scale(size),
             RowKind::Formula { scale, .. } => *scale,
-            RowKind::Cam { .. } => self.length,
+            RowKind::Cam { .. } => size,
+        }
+    }
+
+    /// Returns the diameter of the places of markers on parts as the dataset has them, 0 where that
+    /// is rounding of how far they are from the origin. `counts`: which parts count.
+    pub(in crate::scene) fn diameter(&self, counts: impl Fn(usize) -> bool) -> f64 {
+        let points = self.markers.iter().filter_map(|m| {
+            let part = &self.parts[m.part.filter(|&p| counts(p))?];
+            let in_part = part.frame.inverse().point(m.frame.position);
+            Some(part.initial.point(in_part))
+        });
+        let points = points.filter(|p| p.norm().is_finite());
+        let points: Vec<Vec3<f64>> = points.collect();
+        // about the middle, so that a model that is turned keeps its size
+        let share = 1.0 / points.len().max(1) as f64;
+        let middle = (points.iter()).fold(Vec3::zero(), |sum, p| sum + p.times(share));
+        let farthest = |from: Vec3<f64>| {
+            let ways = points.iter().map(|p| (*p - from).norm());
+            ways.fold(0.0, f64::max)
+        };
+        let diameter = 2.0 * farthest(middle);
+        // the rounding of places far away is no extent
+        let noise = EXTENT_OF_ROUNDING * farthest(Vec3::zero());
+        if diameter > noise { diameter } else { 0.0 }
+    }
+
+    /// Returns the size of a mechanism of these parts (ascending), as the dataset places it: its
+    /// diameter, else its largest radius of gyration, else how far it is from the origin; 1 where
+    /// it has none of these.
+    pub fn size_of(&self, parts: &[usize]) -> f64 {
+        let diameter = self.diameter(|p| parts.binary_search(&p).is_ok());
+        let gyration = parts.iter().filter_map(|&p| {
+            let link = &self.links[self.parts[p].link?];
+            let [x, y, z] = [0, 1, 2].map(|k| link.inertia.0[k][k]);
+            Some((x.max(y).max(z) / link.mass).sqrt())
+        });
+        let reach = (parts.iter()).map(|&p| self.parts[p].initial.position.norm());
+        let largest =
+            |all: &mut dyn Iterator<Item = f64>| all.filter(|x| x.is_finite()).fold(0.0, f64::max);
+        let sizes = [
+            diameter,
+            largest(&mut { gyration }),
+            largest(&mut { reach }),
+            1.0,
+        ];
+        sizes.into_iter().find(|&x| x > 0.0).unwrap_or(1.0)
+    }
+
+    /// Returns the displacement of a motion that counts as one: a radian, or the size of the
+    /// mechanism.
+    pub fn unit_of_motion(&self, motion: usize) -> f64 {
+        if self.drives_an_angle(motion) {
+            1.0
+        } else {
+            self.length
         }
     }
 }

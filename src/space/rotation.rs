@@ -24,6 +24,35 @@ pub fn from_313<S: Scalar>(psi: S, theta: S, phi: S) -> Mat3<S> {
     about_axis(2, psi) * about_axis(0, theta) * about_axis(2, phi)
 }
 
+/// Returns the rotation with these angles between each axis and what it becomes, 0 … π, about that
+/// of the possible axes which is nearest to `near`; `None` where there is none.
+///
+/// ```text
+/// cos αₖ = c + (1 − c) uₖ²,   c = cos of the angle of the rotation, u its axis
+/// ```
+pub fn with_angles_between_axes(angles: [f64; 3], near: Vec3<f64>) -> Option<Mat3<f64>> {
+    /// Share of the axis below zero that six digits of the angles leave.
+    const ROUNDING: f64 = 1e-4;
+    let cosines = angles.map(Scalar::cos);
+    let c = 0.5 * (cosines.iter().sum::<f64>() - 1.0);
+    let left = 1.0 - c;
+    if left < ROUNDING * ROUNDING {
+        return Some(Mat3::identity());
+    }
+    let shares = cosines.map(|cosine| (cosine - c) / left);
+    if shares
+        .iter()
+        .any(|share| share.is_nan() || *share < -ROUNDING)
+    {
+        return None;
+    }
+    let axis = [0, 1, 2].map(|k| shares[k].max(0.0).sqrt().copysign(near.0[k] + 0.0));
+    let half = 0.5 * Scalar::acos(c.clamp(-1.0, 1.0));
+    let (sine, cosine) = Scalar::sin_cos(half);
+    let [x, y, z] = axis.map(|x| x * sine);
+    Some(from_quaternion([cosine, x, y, z]))
+}
+
 /// Returns the frame with z along `z` and x in the half plane of `x`, or `None` when they are
 /// parallel or zero.
 pub fn from_z_and_x(z: Vec3<f64>, x: Vec3<f64>) -> Option<Mat3<f64>> {
@@ -112,6 +141,20 @@ pub fn to_quaternion(r: &Mat3<f64>) -> [f64; 4] {
     let n = q.iter().map(|x| x * x).sum::<f64>().sqrt();
     let sign = if q[0] < 0.0 { -1.0 } else { 1.0 };
     q.map(|x| sign * x / n)
+}
+
+/// Returns the rotation vector of a rotation: axis times angle.
+pub fn vector(R: &Mat3<f64>) -> Vec3<f64> {
+    let [w, x, y, z] = to_quaternion(R);
+    let (sine, sign) = (
+        (x * x + y * y + z * z).sqrt(),
+        if w < 0.0 { -1.0 } else { 1.0 },
+    );
+    if sine == 0.0 {
+        return Vec3::zero();
+    }
+    let angle = 2.0 * Scalar::atan2(sine, w.abs());
+    Vec3([x, y, z]).times(sign * angle / sine)
 }
 
 /// Rounds the entries that differ from 0, 1 or −1 by rounding only.

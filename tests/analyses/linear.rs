@@ -377,3 +377,38 @@ fn an_equilibrium_is_at_rest_however_it_was_found_and_in_any_units() {
         assert!(linear(&mut begun, &Wanted::default()).unrest.is_some());
     }
 }
+
+/// An upright top that spins at any speed: the tilt z and its rate u in the top's own axes, z = x + i y. The rate of a
+/// quaternion is half of it times the angular velocity, which is why z turns by half the spin.
+///
+/// ```text
+/// z' = -i w/2 z + u        I u' = m g l z - i (I - C) w u
+/// ```
+#[test]
+fn a_top_has_its_eigenvalues_at_any_spin() {
+    for k in 0..60 {
+        let spin = 0.01 * 10f64.powf(f64::from(k) / 12.0);
+        let text = format!(
+            "PART/2, MASS=1, CM=2, IP=0.1,0.1,0.05, WZ={spin}\nMARKER/2, PART=2, QP=0,0,0.5\nMARKER/3, PART=2\n\
+             JOINT/1, SPHERICAL, I=3, J=1\nACCGRAV/KGRAV=-9.81\n"
+        );
+        let found = linear(&mut session(&text), &Wanted::default());
+        let turns = [0.5 * spin, (0.35 - 0.05) / 0.35 * spin];
+        let (middle, apart) = (0.5 * (turns[0] + turns[1]), 0.5 * (turns[0] - turns[1]));
+        let inner = 0.5 * 9.81 / 0.35 - apart * apart;
+        let (re, im) = match inner > 0.0 {
+            true => (inner.sqrt(), [middle; 2]),
+            false => (0.0, [1.0, -1.0].map(|s| middle + s * (-inner).sqrt())),
+        };
+        for im in im {
+            let near = found.modes.iter().any(|mode| {
+                let off = (mode.re.abs() - re)
+                    .abs()
+                    .max((mode.im.abs() - im.abs()).abs());
+                off < 1e-7 * (1.0 + spin)
+            });
+            let all: Vec<_> = found.modes.iter().map(|m| (m.re, m.im)).collect();
+            assert!(near, "{spin}: {re} {im} is not among {all:?}");
+        }
+    }
+}

@@ -4,7 +4,7 @@
 use crate::running;
 
 use cognate::results::Status;
-use running::{Analysis, Session, go, mistakes, session_by, try_to, values};
+use running::{Analysis, Session, go, last, mistakes, session_by, try_to, values};
 
 fn run(text: &str, columns: &[&str], method: &str, end: f64) -> Session {
     let mut s = session_by(text, columns, method, 1e-10);
@@ -340,4 +340,71 @@ fn every_form_of_force_may_read_reactions() {
             .iter()
             .all(|t| (t - 2.0).abs() < 1e-12)
     );
+}
+
+/// Friction as people write it, of the length of a reaction: the root has no slope where the iteration begins.
+#[test]
+fn friction_of_the_length_of_a_reaction_begins_at_a_root_of_zero() {
+    let run = |function: &str| {
+        let text = format!(
+            "PART/2, MASS=10, CM=4, IP=1,1,1, WZ=5\nMARKER/2, PART=2\nMARKER/4, PART=2, QP=0.4,0,0\n\
+             JOINT/1, REVOLUTE, I=2, J=1\nSFORCE/1, ROTATIONAL, ACTIONONLY, I=2, J=1, FUNCTION={function}\n"
+        );
+        last(&run(&text, &["WZ(2,1)"], "DOP853", 1.0), "WZ(2,1)")
+    };
+    let by_root = run("-0.004*SQRT(JOINT(1,0,2,0)**2+JOINT(1,0,3,0)**2)");
+    let by_magnitude = run("-0.004*FM(2,1)");
+    // 10 kg at 0.4 m: a torque of -0.004 * 4 |(w^2, w')| on 2.6 kg m2
+    let k: f64 = 0.004 * 4.0 / 2.6;
+    let exact = 1.0 / (0.2 + k / (1.0 - k * k).sqrt());
+    assert!(
+        (by_root - exact).abs() < 1e-7 && (by_magnitude - exact).abs() < 1e-7,
+        "{by_root} {by_magnitude}"
+    );
+}
+
+/// A hinge that is left out as redundant bears its share, which functions and friction may read: the motion is that of a
+/// hinge with twice the radius, and it is said that it depends on the share.
+#[test]
+fn reactions_of_joints_that_are_left_out_may_be_read() {
+    let pair = "PART/2, MASS=10, CM=4, IP=1,1,1, WZ=5\nMARKER/2, PART=2\nMARKER/3, PART=2, QP=0,0,1\n\
+                MARKER/10, PART=1, QP=0,0,1\nMARKER/4, PART=2, QP=0.4,0,0.5\n\
+                JOINT/1, REVOLUTE, I=2, J=1\nJOINT/2, REVOLUTE, I=3, J=10\n";
+    let columns = ["WZ(2,1)", "JOINT(2,0,2,0)"];
+    let friction = |joint: u32| {
+        format!(
+            "FRICTION/1, JOINT={joint}, MU_STATIC=0.2, MU_DYNAMIC=0.2, PIN_RADIUS=0.02, FRICTION_ARM=0.05, \
+             STICTION_TRANSITION_VELOCITY=1E-3, MAX_STICTION_DEFORMATION=1E-5, INPUTS=REACTION_FORCE\n"
+        )
+    };
+    let read = |joint: u32| {
+        format!(
+            "SFORCE/1, ROTATIONAL, ACTIONONLY, I=2, J=1, FUNCTION=-0.008*SQRT(1+JOINT({joint},0,2,0)**2)\n"
+        )
+    };
+    let ends = |extra: &str| {
+        let s = run(&format!("{pair}{extra}"), &columns, "DOP853", 1.0);
+        let told = s
+            .run
+            .record
+            .warnings
+            .iter()
+            .filter(|w| w.code == "open_reaction");
+        assert_eq!(
+            told.count(),
+            usize::from(!extra.is_empty()),
+            "{:?}",
+            s.run.record.warned()
+        );
+        columns.map(|c| last(&s, c))
+    };
+    // both hinges are alike about the middle, so that it is the same which of them is read
+    for of in [&friction as &dyn Fn(u32) -> String, &read] {
+        let [first, second] = [1, 2].map(|joint| ends(&of(joint)));
+        for (a, b) in first.into_iter().zip(second) {
+            assert!((a - b).abs() < 1e-7 * b.abs(), "{first:?} {second:?}");
+        }
+    }
+    assert!((ends(&friction(2))[0] - 4.924242071).abs() < 1e-7);
+    assert!((ends("")[0] - 5.0).abs() < 1e-12);
 }

@@ -97,6 +97,81 @@ fn a_marker_begins_where_and_as_fast_as_its_line_says() {
     assert!(warnings.is_empty(), "{warnings:?}");
 }
 
+/// Angles that have no slope where the marker is drawn (θ = 0) are met as any others are, and half a turn is.
+#[test]
+fn a_marker_begins_with_angles_that_have_no_slope_where_it_is_drawn() {
+    let columns = ["RTOD*PSI(2,1)", "RTOD*THETA(2,1)", "RTOD*PHI(2,1)"];
+    for [psi, theta, phi] in [
+        [10.0, 20.0, 30.0],
+        [170.0, 130.0, -100.0],
+        [-40.0, 179.0, 80.0],
+        [90.0, 90.0, 90.0],
+        [45.0, 180.0, 0.0],
+    ] {
+        let text = format!(
+            "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\n\
+             ! cognate: IC MARKER/2, PSI={psi}D, THETA={theta}D, PHI={phi}D\n"
+        );
+        let (found, warnings) = start(&text, &columns);
+        assert!(warnings.is_empty(), "{psi} {theta} {phi}: {warnings:?}");
+        let between = |a: f64, b: f64| ((a - b + 180.0).rem_euclid(360.0) - 180.0).abs();
+        assert!((found[1] - theta).abs() < 1e-5, "{found:?}");
+        // the other two have no values of their own at half a turn
+        let has_others = theta < 180.0;
+        let off = between(found[0], psi).max(between(found[2], phi));
+        assert!(!has_others || off < 1e-5, "{found:?} {psi} {phi}");
+    }
+    // one alone, where parts are drawn without any
+    let text =
+        "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\n! cognate: IC MARKER/2, THETA=50D\n";
+    let (found, warnings) = start(text, &columns);
+    near(&found, &[0.0, 50.0, 0.0]);
+    assert!(warnings.is_empty(), "{warnings:?}");
+    // half a turn of a hinge
+    let text = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/1, REVOLUTE, I=2, J=1\n\
+                ! cognate: IC MARKER/2, PSI=180D\n";
+    let (found, warnings) = start(text, &columns);
+    assert!(
+        (found[0].abs() - 180.0).abs() < 1e-9 && warnings.is_empty(),
+        "{found:?} {warnings:?}"
+    );
+}
+
+/// The angles between the axes of a ball's markers, which results show, are initial values too.
+#[test]
+fn a_ball_begins_with_the_angles_that_its_results_show() {
+    let ball = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2, REULER=0D,40D,0D\nJOINT/1, SPHERICAL, I=2, J=1\n";
+    // of turns by 60 deg about x and about (1, 1, 1), half a turn about z, and none
+    let third = f64::acos(2.0 / 3.0).to_degrees();
+    for angles in [[0.0, 60.0, 60.0], [third; 3], [180.0, 180.0, 0.0], [0.0; 3]] {
+        let [x, y, z] = angles;
+        let text = format!("{ball}! cognate: IC JOINT/1, X={x}D, Y={y}D, Z={z}D\n");
+        let mut options = running::options(&[], 1e-10);
+        options.full = true;
+        let mut s = running::begin(model(&text), "ball", options);
+        go(&mut s, Analysis::Dynamic, 0.001, 1);
+        let warned = s.run.record.warned();
+        assert!(warned.is_empty(), "{angles:?}: {warned:?}");
+        for (name, wanted) in ["X", "Y", "Z"].into_iter().zip(angles) {
+            let found = first(&s, &format!("JOINT_1_VARIABLES.{name}"));
+            assert!(
+                (found - wanted).abs() < 1e-5,
+                "{name}: {found} instead of {wanted}"
+            );
+        }
+    }
+    let refused = |line: &str| {
+        let text = format!("UNITS/SYSTEM=MKS\n{GROUND}{ball}{line}END\n");
+        let model = cognate::model::Model::from_text(&text);
+        let said = model
+            .and_then(|m| m.checked().map(|_| m.title.clone()))
+            .unwrap_err();
+        format!("{said:?}")
+    };
+    assert!(refused("! cognate: IC JOINT/1, X=0D, Y=60D\n").contains("are given or none"));
+    assert!(refused("! cognate: IC JOINT/1, X=0D, Y=60D, Z=90D\n").contains("no turn has these"));
+}
+
 #[test]
 fn a_marker_moves_its_mechanism_as_a_joint_would() {
     // a crank of length 1, drawn at 20°: the tip at 60°, moving up by 1: ω = 1/cos 60°

@@ -19,12 +19,13 @@ use crate::analysis::system::System;
 use crate::arrange::Arrange;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
+use crate::numeric;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
 use crate::space::Vec3;
-use nalgebra::linalg::Schur;
+use nalgebra::linalg::Hessenberg;
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -110,9 +111,18 @@ pub(super) fn modes(
 /// Returns the eigenvalues of a balanced matrix, in no particular order; `None`: the iteration does
 /// not converge.
 pub(super) fn eigenvalues(balanced: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
-    let sweeps = 100 * balanced.nrows().max(30);
-    let schur = Schur::try_new(balanced.clone(), f64::EPSILON, sweeps)?;
-    Some(schur.complex_eigenvalues().iter().copied().collect())
+    let n = balanced.nrows();
+    if n < 2 {
+        return Some(balanced.iter().map(|&x| Complex::new(x, 0.0)).collect());
+    }
+    let mut by_rows = Hessenberg::new(balanced.clone()).unpack_h().transpose();
+    let found = numeric::eigenvalues::eigenvalues(by_rows.as_mut_slice(), n)?;
+    Some(
+        found
+            .into_iter()
+            .map(|(re, im)| Complex::new(re, im))
+            .collect(),
+    )
 }
 
 /// Returns whether rounding of a balanced matrix may make a part of an eigenvalue so large (1).

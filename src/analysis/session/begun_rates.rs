@@ -6,7 +6,7 @@ use super::carried::{Carried, moved, placed};
 use super::state_at_start::Start;
 use crate::analysis::look::Look;
 use crate::analysis::start::velocities::{self, moving};
-use crate::analysis::start::{assemble, initial_conditions, placement};
+use crate::analysis::start::{assemble, initial_conditions};
 use crate::analysis::system::closures;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Driven, ElementKind, Joint, Level, Model};
@@ -164,7 +164,7 @@ impl Session {
             return Ok(None);
         };
         let mut start = Start::new(scene, of.mode, of.t);
-        placement::initial_joints(&start.scene, model, &mut start.q);
+        initial_conditions::initial_joints(&start.scene, model, &mut start.q);
         for m in 0..start.scene.motions.len() {
             self.initial_motion(&start.scene, m, &mut start.x);
         }
@@ -172,7 +172,7 @@ impl Session {
         let conditions = initial_conditions::collect(&start.scene, model);
         let mut stopped = None;
         let mut seen = || look().inspect_err(|said| stopped = Some(said.clone()));
-        if start.assemble(model, true, &conditions, &mut seen).is_err() {
+        if start.assemble(model, &conditions, &mut seen).is_err() {
             return stopped.map_or(Ok(None), Err);
         }
         (start.configuration).begin_states(&start.scene, &mut start.x);

@@ -4,8 +4,8 @@
 use super::Session;
 use super::growth;
 use super::stop_reason::{Cause, StopReason};
-use crate::analysis::start::alignment;
 use crate::analysis::start::assemble::{Assembly, Redundant};
+use crate::analysis::start::{alignment, open_reactions};
 use crate::analysis::system::System;
 use crate::analysis::time::{ranks, valueless};
 use crate::analysis::trajectory::{Ended, EnergyFlow, Limited, Trajectory};
@@ -140,6 +140,10 @@ impl Session {
                 time: self.time(),
                 equations,
             });
+        }
+        let (here, numbers) = (system.configured(), &system.numbers);
+        for warning in open_reactions::read_by_loads(here, numbers, &assembly.redundant) {
+            self.warn(warning);
         }
         self.run.record.redundant = names;
         self.run.record.freedom = assembly.freedom as i64;

@@ -17,7 +17,7 @@
 
 use super::selection::{Omission, Selection, omits};
 use super::shown::{ENERGIES, Unit, What};
-use crate::model::{Driven, ElementId, ElementKind, JointKind, Model};
+use crate::model::{BALL, Driven, ElementId, ElementKind, Model};
 use crate::results;
 
 /// A group of components of a set.
@@ -387,13 +387,13 @@ pub(super) fn joint_variables(model: &Model, joint: u32) -> Vec<Piece> {
     let Some(data) = model.joints.get(&joint) else {
         return Vec::new();
     };
-    if matches!(data.kind, JointKind::Spherical | JointKind::Convel) {
+    if data.kind.is_ball() {
         // a ball has no angles of its own: those between the axes of its markers
         let between = |(name, axis)| {
             let (i, j) = (data.i, data.j);
             of_scene(name, Unit::Degree, What::BetweenAxes { i, j, axis })
         };
-        return [("X", 0), ("Y", 1), ("Z", 2)].map(between).into();
+        return BALL.into_iter().zip(0..).map(between).collect();
     }
     let variables = data.kind.row().variables.iter();
     let pieces = variables.map(|&(variable, gauge)| {

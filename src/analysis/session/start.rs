@@ -14,7 +14,7 @@ use crate::analysis::look::Look;
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::start::velocities::Beginning;
 use crate::analysis::start::{
-    coincident, embedded, initial_conditions, leap, misalignment, placement, velocities,
+    coincident, embedded, initial_conditions, leap, misalignment, velocities,
 };
 use crate::analysis::system::external_inputs::ExternalInputs;
 use crate::analysis::system::{System, complaints};
@@ -224,7 +224,7 @@ impl Session {
     ) -> Result<Assembled, Vec<Diagnostic>> {
         // the dataset
         if start.mode != KINEMATIC && start.mode != STATIC {
-            placement::initial_joints(&start.scene, &self.model, &mut start.q);
+            initial_conditions::initial_joints(&start.scene, &self.model, &mut start.q);
         }
         for m in 0..start.scene.motions.len() {
             self.initial_motion(&start.scene, m, &mut start.x);
@@ -272,7 +272,7 @@ impl Session {
             Vec::new()
         };
         // the rows, and what they did not let be met
-        let (mut assembly, contacts) = (start.assemble(&self.model, joints, &conditions, look))
+        let (mut assembly, contacts) = (start.assemble(&self.model, &conditions, look))
             .map_err(|said| blamed(&self.model, said))?;
         let (here, t, q, x) = (start.here(), start.t, &start.q, &start.x);
         let warnings = &mut assembly.warnings;

@@ -109,7 +109,6 @@ impl Start {
     pub fn assemble(
         &mut self,
         model: &Model,
-        joints: bool,
         conditions: &[InitialCondition],
         look: Look<'_>,
     ) -> Result<(Assembly, Vec<cams::Start>), Vec<Diagnostic>> {
@@ -118,8 +117,7 @@ impl Start {
             model,
             t: self.t,
             x: &self.x,
-            joints,
-            conditions,
+            conditions: conditions.to_vec(),
         };
         drawn.assemble_while(&mut self.configuration, &mut self.q, look)
     }

@@ -435,7 +435,7 @@ impl<'s> Search<'s> {
         for way in [DRIVEN, -DRIVEN] {
             let mut there = configuration.clone();
             for (m, motion) in there.motions.iter_mut().enumerate() {
-                motion.stands_at = Some(prescribed[m] + way * self.unit_of_motion(m));
+                motion.stands_at = Some(prescribed[m] + way * self.scene.unit_of_motion(m));
             }
             let mut q = q.to_vec();
             let held = |scene: Configured<'_>, r: usize| scene.is_held(r);
@@ -450,19 +450,6 @@ impl<'s> Search<'s> {
             }
             return;
         }
-    }
-
-    /// Returns what counts as one in the displacement of a motion: rad, or the length of the scene.
-    fn unit_of_motion(&self, m: usize) -> f64 {
-        let scene = self.scene;
-        let is_angle = match scene.motions[m].coordinate {
-            Some(c) => scene.coordinates[c].angular,
-            None => scene.rows.iter().enumerate().any(|(r, row)| {
-                let own = matches!(row.kind, RowKind::Markers { motion: Some(of), .. } if of == m);
-                own && !is_length(scene, r)
-            }),
-        };
-        if is_angle { 1.0 } else { scene.length }
     }
 
     /// Measures gaps of some rows, and what they determine beyond the others, at one place.

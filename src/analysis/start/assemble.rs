@@ -7,7 +7,7 @@
 use crate::analysis::direction::{Axis, Direction};
 use crate::analysis::look::Look;
 use crate::analysis::quantity::{length, short};
-use crate::analysis::start::{alignment, branch, nearby, placement};
+use crate::analysis::start::{alignment, branch, nearby};
 use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::arrange::Arrange;
 use crate::diagnostic::{Cause, Diagnostic};
@@ -237,7 +237,7 @@ fn relative(scene: &Scene, r: usize, value: f64) -> f64 {
 
 /// Clears the rows that hold and move nothing, as a GCON between markers of one body: the direction
 /// of such a row is rounding, and no step along it closes what rounding leaves.
-pub(super) fn clear_idle(scene: &Scene, g: &DVector<f64>, gradient: &mut [SparseRow]) {
+pub(super) fn clear_idle(scene: &Scene, g: &[f64], gradient: &mut [SparseRow]) {
     for (r, row) in gradient.iter_mut().enumerate() {
         let size = row.iter().map(|e| e.1 * e.1).sum::<f64>().sqrt();
         let moves = size > EMPTY * scene.row_scale(r).min(1.0);
@@ -348,12 +348,8 @@ pub(super) fn close_while<E>(
     ignored: impl Fn(Configured<'_>, usize) -> bool,
     look: &mut dyn FnMut() -> Result<(), E>,
 ) -> Result<Closed, E> {
-    // where parts are not placed, these changes decide where they go, however far from the origin
-    let w = if placement::places(scene) {
-        weights(scene)
-    } else {
-        weights_at(scene, scene.size)
-    };
+    // these changes do not depend on how far from the origin it is
+    let w = weights_at(scene, scene.size);
     let mover = Mover::new(scene);
     let worst = |g: &DVector<f64>| {
         (0..g.len())
@@ -371,7 +367,7 @@ pub(super) fn close_while<E>(
             g[r] = 0.0;
             gradient[r].clear();
         }
-        clear_idle(scene, &g, &mut gradient);
+        clear_idle(scene, g.as_slice(), &mut gradient);
         (g, gradient)
     };
     let (mut g, mut gradient) = rows_at(configuration, q);

@@ -18,7 +18,6 @@
 //! have led to an opposite.
 
 use crate::analysis::start::assemble::{least_change, merged, numbers, rows_at_rest};
-use crate::analysis::start::placement::log;
 use crate::model::ElementId;
 use crate::physics::action::Action;
 use crate::physics::row::{Drive, Law, about_the_middle, body_angles};
@@ -39,7 +38,7 @@ pub(super) const ON_BRANCH: f64 = 1e-2;
 const NEAR_BRANCH: f64 = 0.2;
 /// Sine of the angle between axes below which their common normal is not read off them: numbers
 /// typed with six digits make one up.
-const NO_NORMAL: f64 = 1e-3;
+pub(super) const NO_NORMAL: f64 = 1e-3;
 /// Part of its size that a driven angle keeps next to a singular position of the body angles.
 const LEAST_SHARE: f64 = 0.1;
 /// Cosine of β₂ below which β₁ cannot be read off.
@@ -131,8 +130,8 @@ pub fn of_tie(
 }
 
 /// Returns the turn of a frame to another (1).
-fn whole(from: &Mat3<f64>, to: &Mat3<f64>) -> Vec<(Vec3<f64>, f64)> {
-    let turn = log(&(*to * from.transpose()));
+pub(super) fn whole(from: &Mat3<f64>, to: &Mat3<f64>) -> Vec<(Vec3<f64>, f64)> {
+    let turn = rotation::vector(&(*to * from.transpose()));
     (0..3)
         .map(|k| (to.column(k), turn.dot(to.column(k))))
         .collect()
@@ -140,7 +139,7 @@ fn whole(from: &Mat3<f64>, to: &Mat3<f64>) -> Vec<(Vec3<f64>, f64)> {
 
 /// Returns the angle between two orientations, in rad.
 pub(super) fn angle_between(a: &Mat3<f64>, b: &Mat3<f64>) -> f64 {
-    log(&(*b * a.transpose())).norm()
+    rotation::vector(&(*b * a.transpose())).norm()
 }
 
 /// Returns the shortest turn of an axis to another (2), and none about the normal in between.
@@ -474,7 +473,7 @@ pub fn turn(
 
 /// Returns the unit torque on I about an axis, and its opposite on J: its component along a
 /// velocity is how fast I turns against J about that axis.
-fn against(i: usize, j: usize, axis: Vec3<f64>) -> [(usize, Action<f64>); 2] {
+pub(super) fn against(i: usize, j: usize, axis: Vec3<f64>) -> [(usize, Action<f64>); 2] {
     let torque = |torque| Action {
         force: Vec3::zero(),
         torque,

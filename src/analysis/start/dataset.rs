@@ -9,8 +9,8 @@ use crate::analysis::look::Look;
 use crate::analysis::start::alignment;
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::start::branch;
-use crate::analysis::start::initial_conditions::{self, InitialCondition};
-use crate::analysis::start::placement;
+use crate::analysis::start::initial_conditions::{self, InitialCondition, Wanted};
+use crate::analysis::start::nearest::nearest;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::scene::Scene;
@@ -18,7 +18,6 @@ use crate::scene::cams;
 use crate::scene::configuration::Configuration;
 
 /// A dataset that is to be assembled.
-#[derive(Clone, Copy)]
 pub struct Dataset<'a> {
     /// the scene
     pub scene: &'a Scene,
@@ -28,17 +27,15 @@ pub struct Dataset<'a> {
     pub t: f64,
     /// states   (n_x)
     pub x: &'a [f64],
-    /// whether initial conditions of joints count
-    pub joints: bool,
     /// initial conditions
-    pub conditions: &'a [InitialCondition],
+    pub conditions: Vec<InitialCondition>,
 }
 
 /// An assembled dataset, and where contacts on curves were asked to begin.
 type Assembled = Result<(Assembly, Vec<cams::Start>), Vec<Diagnostic>>;
 
 impl<'a> Dataset<'a> {
-    /// Returns the dataset as it is drawn, at time 0, with the initial conditions of its joints.
+    /// Returns the dataset as it is drawn, at time 0, with its initial conditions.
     ///
     /// `x`: states   (n_x)
     pub fn drawn(scene: &'a Scene, model: &'a Model, x: &'a [f64]) -> Self {
@@ -47,8 +44,7 @@ impl<'a> Dataset<'a> {
             model,
             t: 0.0,
             x,
-            joints: true,
-            conditions: &[],
+            conditions: initial_conditions::collect(scene, model),
         }
     }
 
@@ -109,22 +105,19 @@ impl<'a> Dataset<'a> {
         placed: bool,
         look: Look<'_>,
     ) -> Assembled {
-        let Self { scene, t, x, .. } = *self;
+        let Self {
+            scene, model, t, x, ..
+        } = *self;
         alignment::leave_out(scene, configuration, t, q, x, look)?;
         look()?;
         let here = scene.within(configuration);
-        let placed = placed && placement::settle(here, self.model, t, q, x, self.joints);
-        // where parts are too many to be weighed, or on curves, coordinates move as little as may
-        // be
-        let placed = placed && !self.conditions.iter().any(InitialCondition::is_of_line);
-        let starts = if placed && self.joints {
-            Vec::new()
-        } else {
-            initial_conditions::approach(scene, configuration, self.conditions, t, q, x)
-        };
+        let numbers = assemble::numbers(here, t, q, &vec![0.0; scene.layout.n_v], x);
+        let wanted = Wanted::new(here, &self.conditions, &numbers);
+        let place = (scene, &mut *configuration);
+        nearest(place, (model, &wanted), t, q, x, placed);
         look()?;
         let assembly = assemble::positions_while(scene, configuration, t, q, x, look)?;
-        Ok((assembly, starts))
+        Ok((assembly, wanted.starts))
     }
 }
 

@@ -9,35 +9,41 @@
 //! PTCV: I at the point of the curve next to DISP        CVCV: the curves touch next to IDISP and JDISP
 //! ```
 //!
-//! First rows and conditions are satisfied together, by least changes; then the rows alone,
-//! exactly. So rows win where they contradict conditions, with a warning. Only dynamic simulations
+//! Angles of a marker that are all given, or that have no slope where they are drawn, as ψ and φ have
+//! none at θ = 0, are one condition: the whole orientation, with the angles as drawn in place of
+//! those that are not given. So are the three angles of a ball.
+//!
+//! ```text
+//! the turn that is left from x_I, y_I, z_I to where they are wanted is zero
+//! ```
+//!
+//! The position nearest to the drawing meets them as far as the rows let it (`nearest.rs`): rows win
+//! where they contradict conditions, with a warning. Only dynamic simulations
 //! have conditions of joints and parts: kinematics and statics find their own configuration. Those
 //! of contacts count always: they choose among the ways in which the parts can be put together.
 
-use crate::analysis::start::assemble::{self, least_change, rows_at_rest};
+use crate::analysis::start::{assemble, branch};
 use crate::analysis::warning::ConditionWarning;
 use crate::arrange::Arrange;
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
-use crate::model::{ElementId, ElementKind, InitialQuantity, Model};
+use crate::model::{Beginning, ElementId, ElementKind, InitialQuantity, Model};
+use crate::numeric::connected::SparseRow;
 use crate::physics::cam::Contact;
 use crate::physics::coupler::Gauge;
 use crate::physics::kinematic::kinematic;
 use crate::scalar::Scalar;
 use crate::scene::cams::{self, Start};
-use crate::scene::configuration::{Configuration, Configured};
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::mover::Mover;
-use crate::scene::programs::{record_with_complaints, weights};
+use crate::scene::programs::record_with_complaints;
 use crate::scene::slopes::{Direction, along};
-use crate::scene::{RowKind, Scene};
-use crate::space::{Frame, MarkerState};
-use nalgebra::{DMatrix, DVector};
+use crate::scene::{RowKind, Scene, Source};
+use crate::space::{Frame, MarkerState, Mat3, Vec3, rotation};
 use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
-/// Iterations towards rows and conditions together.
-const MAX_ITERATIONS: usize = 30;
 /// Deviation of a condition that is met, at most (rad, lengths relative to the size of the
 /// mechanism).
 const MET_TOLERANCE: f64 = 1e-7;
@@ -51,6 +57,8 @@ enum Given {
     Part { part: usize, component: usize },
     /// of a marker in ground: 0 x, 1 y, 2 z, 3 ψ, 4 θ, 5 φ
     Marker { marker: usize, component: usize },
+    /// angle between an axis of marker `i` and that of marker `j`: 0 x, 1 y, 2 z
+    Between { i: usize, j: usize, axis: usize },
     /// small turn of a part's frame from where the dataset has it, about its axis
     Turn { part: usize, axis: usize },
 }
@@ -66,8 +74,34 @@ pub struct InitialCondition {
     angle: bool,
     /// a motion says what it is: nothing can be changed
     driven: bool,
-    /// a comment line of ours gives it
-    of_line: bool,
+    /// the orientation that it is a part of: that is met in its place
+    orientation: Option<Orientation>,
+}
+
+/// The orientation of marker I that is wanted, against marker J or ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Orientation {
+    i: usize,
+    j: Option<usize>,
+    /// R_JI
+    wanted: Mat3<f64>,
+}
+
+impl Orientation {
+    /// Returns the turn that is left, about axes in ground.
+    fn left(&self, at: &Equations<'_, f64>) -> Vec<(Vec3<f64>, f64)> {
+        let from = at.marker(self.i).R_GM;
+        let against = self.j.map_or(Mat3::identity(), |j| at.marker(j).R_GM);
+        branch::whole(&from, &(against * self.wanted))
+    }
+
+    /// Returns how fast I turns against J about an axis in ground, by the velocities.
+    fn slope(&self, at: &Equations<'_, f64>, axis: Vec3<f64>) -> Vec<(usize, f64)> {
+        match self.j {
+            Some(j) => at.gradient_of(&branch::against(self.i, j, axis)),
+            None => at.gradient_of(&branch::against(self.i, self.i, axis)[..1]),
+        }
+    }
 }
 
 /// Returns the joints of a model that have an initial displacement or rate: number, gauge,
@@ -86,6 +120,23 @@ pub(in crate::analysis) fn of_joints(model: &Model) -> Vec<(u32, Gauge, [Option<
         }
     }
     found
+}
+
+/// Puts in IC, ICTRAN and ICROT of joints that carry a part: there assembly begins.
+pub(in crate::analysis) fn initial_joints(scene: &Scene, model: &Model, q: &mut [f64]) {
+    for c in &scene.coordinates {
+        let Some(joint) = c.joint.and_then(|j| model.joints.get(&j)) else {
+            continue;
+        };
+        let given = if c.angular {
+            joint.ic_rotation[0]
+        } else {
+            joint.ic_translation[0]
+        };
+        if let (Some(value), Source::Free { q: place, .. }) = (given, c.source) {
+            q[place] = value;
+        }
+    }
 }
 
 /// The arguments of EXACT, by the components of a part's frame.
@@ -107,7 +158,7 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
         let driven = scene.coordinates.iter().any(|c| {
             c.joint == Some(id)
                 && c.angular == gauge.is_angle()
-                && matches!(c.source, crate::scene::Source::Driven(_))
+                && matches!(c.source, Source::Driven(_))
         });
         if let ([Some(i), Some(j)], Some(value)) = (markers, given[0]) {
             conditions.push(InitialCondition {
@@ -117,7 +168,7 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
                 value,
                 angle: gauge.is_angle(),
                 driven,
-                of_line: false,
+                orientation: None,
             });
         }
     }
@@ -134,7 +185,7 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
                 value,
                 angle: component > 2,
                 driven: false,
-                of_line: false,
+                orientation: None,
             });
         };
         for component in 0..3 {
@@ -171,11 +222,15 @@ fn of_lines(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
     let mut found = Vec::new();
     let place = |m: u32| scene.marker_of.get(&m).copied();
     for (&id, values) in &model.beginnings {
+        let orientation = orientation(scene, model, id, values);
         for (&quantity, &value) in values {
             let given = match quantity {
                 InitialQuantity::Variable(k) => model.joints.get(&id.number).and_then(|joint| {
-                    let &(_, gauge) = joint.kind.row().variables.get(k)?;
                     let (i, j) = (place(joint.i)?, place(joint.j)?);
+                    if joint.kind.is_ball() {
+                        return Some((Given::Between { i, j, axis: k }, true));
+                    }
+                    let &(_, gauge) = joint.kind.row().variables.get(k)?;
                     Some((Given::Joint { gauge, i, j }, gauge.is_angle()))
                 }),
                 InitialQuantity::Place(component) => place(id.number)
@@ -190,12 +245,47 @@ fn of_lines(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
                     value,
                     angle,
                     driven: false,
-                    of_line: true,
+                    orientation: orientation.filter(|_| angle),
                 });
             }
         }
     }
     found
+}
+
+/// Returns the orientation that the angles of a marker or a ball ask for together; `None`: each is a
+/// condition of its own.
+fn orientation(
+    scene: &Scene,
+    model: &Model,
+    id: ElementId,
+    values: &Beginning,
+) -> Option<Orientation> {
+    let place = |m: u32| scene.marker_of.get(&m).copied();
+    if id.kind == ElementKind::Joint {
+        let joint = model.joints.get(&id.number).filter(|j| j.kind.is_ball())?;
+        let (i, j) = (place(joint.i)?, place(joint.j)?);
+        let angle = |k: usize| values.get(&InitialQuantity::Variable(k)).copied();
+        let angles = [angle(0)?, angle(1)?, angle(2)?];
+        let [drawn, against] = [i, j].map(|m| scene.drawn(m).rotation);
+        let near = rotation::vector(&(against.transpose() * drawn));
+        let wanted = rotation::with_angles_between_axes(angles, near)?;
+        let j = Some(j);
+        return Some(Orientation { i, j, wanted });
+    }
+    let i = place(id.number)?;
+    let given = [3, 4, 5].map(|k| values.get(&InitialQuantity::Place(k)).copied());
+    let drawn = MarkerState {
+        R_GM: scene.drawn(i).rotation,
+        ..MarkerState::ground()
+    };
+    let has_slopes = Scalar::sin(angle(&drawn, 4)).abs() > branch::NO_NORMAL;
+    if given == [None; 3] || has_slopes && given.contains(&None) {
+        return None;
+    }
+    let [psi, theta, phi] = [0, 1, 2].map(|k| given[k].unwrap_or_else(|| angle(&drawn, 3 + k)));
+    let wanted = rotation::from_313(psi, theta, phi);
+    Some(Orientation { i, j: None, wanted })
 }
 
 fn angle<S: Scalar>(state: &MarkerState<S>, component: usize) -> S {
@@ -216,6 +306,10 @@ impl InitialCondition {
                     }
                 };
                 gauge.value(&frame(i), &frame(j))
+            }
+            Given::Between { i, j, axis } => {
+                let of = |m: usize| at.marker(m).R_GM.column(axis);
+                of(i).dot(of(j)).acos()
             }
             Given::Marker { marker, component } => {
                 let state = at.marker(marker);
@@ -248,11 +342,6 @@ impl InitialCondition {
         }
     }
 
-    /// Returns whether a comment line of ours gives it: a placement of parts does not know it.
-    pub(super) fn is_of_line(&self) -> bool {
-        self.of_line
-    }
-
     /// Returns its deviation; angles the short way.
     fn residual(&self, quantity: f64) -> f64 {
         let off = quantity - self.value;
@@ -264,115 +353,133 @@ impl InitialCondition {
     }
 }
 
-/// Residuals of conditions and their derivatives along the velocities, from the program of their
-/// quantities; conditions without finite ones are left out (zero).
-fn equations(
-    scene: &Scene,
-    conditions: &[InitialCondition],
-    quantities: &Program,
-    numbers: &[f64],
-    mover: &Mover,
-) -> (DVector<f64>, DMatrix<f64>) {
-    let l = scene.layout;
-    let mut found = vec![0.0; conditions.len()];
-    quantities.run(numbers, &mut Work::default(), &mut found);
-    let residual = conditions.iter().zip(&found).map(|(w, &x)| w.residual(x));
-    let mut residual = DVector::from_iterator(conditions.len(), residual);
-    let mut directions = vec![Direction::new(); l.n_v];
-    for (v, place, slope) in mover.tangents(&numbers[l.q()]) {
-        directions[v].push((l.q_at(place), slope));
-    }
-    let all = numbers.iter().copied();
-    let nothing = |_: &mut [_], _| Ok(());
-    let Ok::<_, Infallible>(mut gradient) = along(
-        quantities,
-        &mut Work::default(),
-        all,
-        &directions,
-        None,
-        nothing,
-    );
-    for w in 0..conditions.len() {
-        let bad = !residual[w].is_finite() || gradient.row(w).iter().any(|x| !x.is_finite());
-        if bad {
-            residual[w] = 0.0;
-            gradient.row_mut(w).fill(0.0);
-        }
-    }
-    (residual, gradient)
+/// A value that is wanted, as an equation to first order.
+pub(super) struct Equation {
+    /// how far it is off   [rad, length]
+    pub residual: f64,
+    /// its slopes along the velocities
+    pub gradient: SparseRow,
+    is_length: bool,
 }
 
-/// Moves positions towards rows and conditions together; contacts that are asked to begin somewhere
-/// are taken to be there, and returned.
-pub fn approach(
-    scene: &Scene,
-    configuration: &mut Configuration,
-    conditions: &[InitialCondition],
-    t: f64,
-    q: &mut [f64],
-    x: &[f64],
-) -> Vec<Start> {
-    let here = scene.within(configuration);
-    let still = vec![0.0; scene.layout.n_v];
-    let starts = cams::starts(here, &assemble::numbers(here, t, q, &still, x));
-    let conditions: Vec<_> = conditions.iter().filter(|c| !c.driven).cloned().collect();
-    let conditions = &conditions[..];
-    if conditions.is_empty() && starts.is_empty() || scene.layout.n_v == 0 {
-        return starts;
+impl Equation {
+    /// Returns what counts as one of it in a mechanism of this size.
+    pub fn one(&self, size: f64) -> f64 {
+        if self.is_length { size } else { 1.0 }
     }
-    let w = weights(scene);
-    let mover = Mover::new(scene);
-    let (quantities, _) = record_with_complaints(here, |at| {
-        conditions.iter().map(|w| w.quantity(scene, at)).collect()
-    });
-    // contacts that are asked to be somewhere are equations of their own
-    let asked = |scene: Configured<'_>, r: usize| match scene.rows[r].kind {
-        RowKind::Cam { cam, .. } => starts.iter().any(|s| s.cam == cam),
-        _ => scene.is_held(r),
-    };
-    for _ in 0..MAX_ITERATIONS {
-        let here = assemble::numbers(scene.within(configuration), t, q, &still, x);
-        cams::track(scene, configuration, &here);
-        cams::place(scene, configuration, &starts, &here);
-        let configured = scene.within(configuration);
-        let (mut g, mut gradient) = rows_at_rest(configured, t, q, x);
-        for r in (0..g.len()).filter(|&r| asked(configured, r)) {
-            g[r] = 0.0;
-            gradient[r].clear();
+}
+
+/// Everything that is wanted of a position beside its rows: conditions, orientations, and where
+/// contacts begin.
+pub(super) struct Wanted {
+    conditions: Vec<InitialCondition>,
+    /// the quantities of the conditions
+    quantities: Program,
+    orientations: Vec<Orientation>,
+    /// where contacts are asked to begin
+    pub starts: Vec<Start>,
+}
+
+impl Wanted {
+    /// Takes over conditions, but for what EXACT asks of parts, whose places are counted.
+    /// Contacts are asked to begin next to where the numbers of an instant have their points.
+    pub fn new(scene: Configured<'_>, conditions: &[InitialCondition], numbers: &[f64]) -> Self {
+        let mut orientations: Vec<Orientation> =
+            conditions.iter().filter_map(|c| c.orientation).collect();
+        orientations.dedup();
+        let is_own = |c: &&InitialCondition| {
+            let of_part = matches!(c.given, Given::Part { .. } | Given::Turn { .. });
+            !c.driven && c.orientation.is_none() && !of_part
+        };
+        let conditions: Vec<_> = conditions.iter().filter(is_own).cloned().collect();
+        let (quantities, _) = record_with_complaints(scene, |at| {
+            conditions.iter().map(|c| c.quantity(&scene, at)).collect()
+        });
+        Self {
+            conditions,
+            quantities,
+            orientations,
+            starts: cams::starts(scene, numbers),
         }
-        let at = Equations::<f64>::new(configured, &here);
-        let places: Vec<(f64, Vec<(usize, f64)>)> = (starts.iter())
-            .flat_map(|s| at.cam_start(s.cam, s.given))
-            .filter(|(value, _)| value.is_finite())
-            .collect();
-        let (off, slopes) = equations(scene, conditions, &quantities, &here, &mover);
-        let (m, n) = (g.len(), conditions.len());
-        let mut a = gradient;
-        for slopes in slopes.row_iter() {
-            let entries = slopes.iter().copied().enumerate();
-            a.push(entries.filter(|e| e.1 != 0.0).collect());
-        }
-        for (_, slopes) in &places {
-            let mut slopes = slopes.clone();
-            slopes.arrange_by_key(|e| e.0);
-            a.push(assemble::merged(slopes));
-        }
-        let all = g
-            .iter()
-            .chain(off.iter())
-            .chain(places.iter().map(|p| &p.0));
-        let b = DVector::from_iterator(m + n + places.len(), all.map(|x| -x));
-        let step = least_change(&a, &w, &b);
-        let size = |v: usize| step[v].abs() / w[v].sqrt();
-        let longest = (0..w.len()).map(size).fold(0.0, f64::max);
-        if !longest.is_finite() || longest < 1e-14 {
-            break;
-        }
-        mover.displace(q, (&step * (0.5 / longest).min(1.0)).as_slice());
     }
-    let reached = assemble::numbers(scene.within(configuration), t, q, &still, x);
-    cams::place(scene, configuration, &starts, &reached);
-    starts
+
+    /// Returns whether a row is that of a contact which is asked to begin somewhere.
+    pub fn asks_for_contact_of(&self, scene: &Scene, row: usize) -> bool {
+        match scene.rows[row].kind {
+            RowKind::Cam { cam, .. } => self.starts.iter().any(|start| start.cam == cam),
+            _ => false,
+        }
+    }
+
+    /// Returns the equations at an instant that have a value and slopes.
+    pub fn equations(
+        &self,
+        scene: Configured<'_>,
+        numbers: &[f64],
+        mover: &Mover,
+    ) -> Vec<Equation> {
+        let at = Equations::<f64>::new(scene, numbers);
+        let mut found = self.of_conditions(&scene, numbers, mover);
+        for start in &self.starts {
+            let all = at.cam_start(start.cam, start.given).into_iter();
+            found.extend(all.map(|(residual, gradient)| Equation {
+                residual,
+                gradient: sorted(gradient),
+                is_length: true,
+            }));
+        }
+        for o in &self.orientations {
+            let left = o.left(&at).into_iter();
+            found.extend(left.map(|(axis, by)| Equation {
+                residual: -by,
+                gradient: sorted(o.slope(&at, axis)),
+                is_length: false,
+            }));
+        }
+        found.retain(|e| {
+            e.residual.is_finite() && e.gradient.iter().all(|(_, slope)| slope.is_finite())
+        });
+        found
+    }
+
+    fn of_conditions(&self, scene: &Scene, numbers: &[f64], mover: &Mover) -> Vec<Equation> {
+        if self.conditions.is_empty() {
+            return Vec::new();
+        }
+        let l = scene.layout;
+        let mut values = vec![0.0; self.conditions.len()];
+        self.quantities
+            .run(numbers, &mut Work::default(), &mut values);
+        let mut directions = vec![Direction::new(); l.n_v];
+        for (v, place, slope) in mover.tangents(&numbers[l.q()]) {
+            directions[v].push((l.q_at(place), slope));
+        }
+        let all = numbers.iter().copied();
+        let nothing = |_: &mut [_], _| Ok(());
+        let Ok::<_, Infallible>(slopes) = along(
+            &self.quantities,
+            &mut Work::default(),
+            all,
+            &directions,
+            None,
+            nothing,
+        );
+        let conditions = self.conditions.iter().zip(&values).enumerate();
+        let equation = |(k, (condition, &value)): (usize, (&InitialCondition, &f64))| Equation {
+            residual: condition.residual(value),
+            gradient: (slopes.row(k).iter().copied().enumerate())
+                .filter(|e| e.1 != 0.0)
+                .collect(),
+            is_length: !condition.angle,
+        };
+        conditions.map(equation).collect()
+    }
+}
+
+/// Returns a row by ascending columns, each once.
+fn sorted(mut row: SparseRow) -> SparseRow {
+    row.arrange_by_key(|e| e.0);
+    assemble::merged(row)
 }
 
 /// Returns warnings of the conditions that an assembled configuration does not meet.
@@ -389,7 +496,10 @@ pub fn unmet(
     let told = conditions.iter().filter_map(|condition| {
         let found = condition.quantity(&scene, &at);
         let unit = if condition.angle { 1.0 } else { scene.size };
-        let off = condition.residual(found);
+        let off = match condition.orientation {
+            Some(o) if o.left(&at).iter().all(|turn| turn.1.abs() <= MET_TOLERANCE) => 0.0,
+            _ => condition.residual(found),
+        };
         (off.abs() > MET_TOLERANCE * unit).then_some(ConditionWarning::Unmet {
             element: condition.element,
             argument: condition.argument,

@@ -2,7 +2,7 @@
 //! parts had to be turned round.
 
 use crate::analysis::direction::Axis;
-use crate::analysis::start::{branch, placement};
+use crate::analysis::start::{branch, initial_conditions};
 use crate::analysis::warning::{AssemblyWarning, ConditionWarning};
 use crate::arrange::Arrange;
 use crate::model::check::alignment::{self, Needed};
@@ -165,7 +165,7 @@ pub fn turned(
     before[scene.layout.q()].copy_from_slice(&scene.initial_q);
     let mut asked = before.clone();
     if joints {
-        placement::initial_joints(&scene, model, &mut asked[scene.layout.q()]);
+        initial_conditions::initial_joints(&scene, model, &mut asked[scene.layout.q()]);
     }
     let [before, asked] = [before, asked].map(|numbers| Equations::new(undriven, &numbers));
     let mut parts: Vec<(ElementId, f64)> = Vec::new();

@@ -13,6 +13,7 @@ mod kinetic;
 pub mod leap;
 pub mod misalignment;
 pub mod nearby;
-pub mod placement;
+mod nearest;
+pub(super) mod open_reactions;
 pub(super) mod tangents;
 pub mod velocities;

@@ -150,12 +150,7 @@ impl<'s> Surroundings<'s> {
             .iter()
             .enumerate()
             .map(|(m, value)| {
-                let one = if scene.drives_an_angle(m) {
-                    1.0
-                } else {
-                    scene.size
-                };
-                let by = step * one * draw.next();
+                let by = step * scene.unit_of_motion(m) * draw.next();
                 if drives { value + by } else { *value }
             })
             .collect();

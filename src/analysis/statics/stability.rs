@@ -11,17 +11,14 @@
 use super::Settler;
 use super::point::Point;
 use crate::diagnostic::counted;
+use crate::numeric::eigenvalues::eigenvalues;
 use crate::numeric::pattern::Pattern;
 use crate::numeric::rank::{Rank, TOLERANCE};
 use crate::scalar::Scalar;
 use crate::scene::programs::record_moving;
 use crate::scene::slopes::{Direction, along};
-use nalgebra::linalg::Schur;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// Sweeps per eigenvalue of a matrix that is not symmetric: two to four are usual; an iteration
-/// that takes many more may not end.
-const MAX_SWEEPS: usize = 30;
 /// Asymmetry of a stiffness, as a part of the whole, up to which loads have a potential: what is
 /// left of an equilibrium's imbalance causes less.
 const ASYMMETRY: f64 = 1e-6;
@@ -125,10 +122,10 @@ impl Settler<'_> {
         let values: Vec<f64> = if answers.has_potential {
             eigen.eigenvalues.iter().copied().collect()
         } else {
-            // the iteration need not end: then the symmetric part tells the work of a push
-            let sweeps = MAX_SWEEPS * reduced.nrows().max(10);
-            match Schur::try_new(reduced, f64::EPSILON, sweeps) {
-                Some(schur) => schur.complex_eigenvalues().iter().map(|c| c.re).collect(),
+            // where an entry is not finite, the symmetric part tells the work of a push
+            let (n, mut by_rows) = (reduced.nrows(), reduced.transpose());
+            match eigenvalues(by_rows.as_mut_slice(), n) {
+                Some(found) => found.iter().map(|z| z.0).collect(),
                 None => eigen.eigenvalues.iter().copied().collect(),
             }
         };

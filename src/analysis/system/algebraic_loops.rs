@@ -6,6 +6,8 @@
 //! ```
 //!
 //! The iteration begins where the last one ended, so that z follows its branch as the state moves.
+//! The first one begins at the guesses; where that leads nowhere, as at a root that has no slope at
+//! zero, at `z + ρ(z)`: what is read is taken to be what it turns out to be.
 //! It ends at rounding, which is measured: reactions that nearly vanish are differences of large
 //! loads, and ρ is rounded as these are. Where no step leads further, the residual counts as zero
 //! if positions moved by a few units in their last place change it as much.
@@ -85,6 +87,8 @@ pub(in crate::analysis) struct AlgebraicLoops {
     positions: Range<usize>,
     /// rounding of ρ as it was measured since the last factors; zero: not yet
     rounding: f64,
+    /// the loops were solved before
+    follows: bool,
 }
 
 /// Returns the sizes from which positions count when they are rounded   (n_q)
@@ -165,6 +169,7 @@ impl AlgebraicLoops {
             sizes: sizes_of_positions(scene),
             positions: scene.layout.q(),
             rounding: 0.0,
+            follows: false,
         }
     }
 
@@ -268,6 +273,25 @@ impl AlgebraicLoops {
     /// # Errors
     /// The index of an unknown whose loop has no solution near.
     pub fn solve(&mut self, numbers: &mut [f64]) -> Result<(), usize> {
+        if self.follows {
+            return self.iterate(numbers);
+        }
+        let guess = numbers[self.places.clone()].to_vec();
+        let mut outcome = self.iterate(numbers);
+        if let Err(first) = outcome {
+            numbers[self.places.clone()].copy_from_slice(&guess);
+            self.see(numbers);
+            self.evaluate(numbers);
+            let all = numbers[self.places.clone()].iter_mut().zip(&self.rho);
+            all.for_each(|(z, rho)| *z += rho);
+            outcome = self.iterate(numbers).map_err(|_| first);
+        }
+        self.follows = outcome.is_ok();
+        outcome
+    }
+
+    /// Solves from where the unknowns in a row of numbers are.
+    fn iterate(&mut self, numbers: &mut [f64]) -> Result<(), usize> {
         let begun = largest(&numbers[self.places.clone()]);
         self.see(numbers);
         let mut size = self.evaluate(numbers);

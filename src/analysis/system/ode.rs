@@ -27,9 +27,11 @@ const SHARE_OF_LARGEST_POSITION: f64 = 0.1;
 const SHARE_OF_LARGEST_SPEED: f64 = 0.02;
 /// Iterations of a projection, at most.
 const MAX_PROJECTIONS: usize = 8;
-/// Change of positions, rad or units of length, at which a projection has converged.
+/// Change of positions, rad or parts of the length of the scene, at which a projection has
+/// converged.
 const PROJECTED: f64 = 1e-11;
-/// Change of positions, rad or units of length, that no velocity on the rows feels.
+/// Change of positions, rad or parts of the length of the scene, that no velocity on the rows
+/// feels.
 const ROUNDING_OF_POSITION: f64 = 1e-15;
 /// The same as [`PROJECTED`] where rows have nearly been dependent: the last digits along them are
 /// noise.
@@ -145,7 +147,9 @@ impl System {
         for _ in 0..MAX_PROJECTIONS {
             self.set(t, y);
             let change = l.change(projection.run(&self.numbers));
-            let size = change.q.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let scales = &self.recorded.rows.scales;
+            let sizes = change.q.iter().zip(scales).map(|(x, s)| x.abs() * s);
+            let size = sizes.fold(0.0, |m, x| if x.is_nan() { x } else { f64::max(m, x) });
             if !size.is_finite() || size > 2.0 * last {
                 break;
             }

@@ -19,7 +19,6 @@ use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::numeric::{Failure, Ode, Stats};
 use crate::scalar::Scalar;
-use crate::scene::RowKind;
 use crate::scene::layout::Layout;
 use crate::scene::mover::Mover;
 use crate::scene::programs::{record, weights};
@@ -507,13 +506,8 @@ impl Drives {
         };
         drives.begin(&system.numbers);
         let read = read_by_rows(system, &drives.values[0]);
-        drives.scales = (0..n)
-            .map(|m| match read[m] {
-                true if turns(system, m) => 1.0,
-                true => 1.0 / system.scene.length,
-                false => 0.0,
-            })
-            .collect();
+        let scale = |m: usize| f64::from(u8::from(read[m])) / scene.unit_of_motion(m);
+        drives.scales = (0..n).map(scale).collect();
         Ok(Some(drives))
     }
 
@@ -553,20 +547,10 @@ impl Drives {
     }
 }
 
-/// Returns whether a motion is an angle.
-fn turns(system: &System, m: usize) -> bool {
-    let scene = &system.scene;
-    if let Some(c) = scene.motions[m].coordinate {
-        return scene.coordinates[c].angular;
-    }
-    !scene.rows.iter().any(|row| {
-        matches!(row.kind, RowKind::Markers { law, motion: Some(k), .. } if k == m && law.is_length())
-    })
-}
-
 /// Returns for each motion whether any row reads it.
 fn read_by_rows(system: &System, values: &[f64]) -> Vec<bool> {
-    /// Change of what a motion prescribes by which the rows that read it are found.
+    /// Change of what a motion prescribes by which the rows that read it are found, rad or parts of
+    /// the length of the scene.
     const DISPLACEMENT: f64 = 1e-4;
     let (scene, l) = (system.configured(), system.scene.layout);
     let (t, q, x) = (
@@ -580,13 +564,17 @@ fn read_by_rows(system: &System, values: &[f64]) -> Vec<bool> {
         crate::analysis::start::assemble::rows_at_rest(scene.within(&there), t, q, x)
     };
     let still = rows(&displacements);
+    let units: Vec<f64> = weights(&scene).iter().map(|w| w.sqrt()).collect();
     let read = |m: usize| {
         let mut other = displacements.clone();
-        other[m] += DISPLACEMENT;
-        let moved = rows(&other);
-        let slopes = moved.1.iter().flatten().zip(still.1.iter().flatten());
-        let turned = slopes.map(|(a, b)| (a.1 - b.1).abs()).fold(0.0, f64::max);
-        let change = (moved.0 - &still.0).amax().max(turned);
+        other[m] += DISPLACEMENT * scene.unit_of_motion(m);
+        let (values, slopes) = rows(&other);
+        let change = (0..scene.rows.len()).map(|r| {
+            let turned =
+                (slopes[r].iter().zip(&still.1[r])).map(|(a, b)| (a.1 - b.1).abs() * units[a.0]);
+            turned.fold((values[r] - still.0[r]).abs(), f64::max) / scene.row_scale(r)
+        });
+        let change = change.fold(0.0, |m, x| if x.is_nan() { x } else { f64::max(m, x) });
         change.is_nan() || change > UNREAD * DISPLACEMENT
     };
     (0..displacements.len()).map(read).collect()

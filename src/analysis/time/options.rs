@@ -3,8 +3,10 @@
 use crate::analysis::system::System;
 use crate::analysis::trajectory::Left;
 use crate::numeric::connected::strong;
+use crate::numeric::eigenvalues::eigenvalues;
 use crate::numeric::pattern::Pattern;
 use crate::numeric::{self, Method, Ode};
+use crate::scalar::hypot;
 use crate::scene::layout::Layout;
 
 /// Shortest step, as a part of the duration of the run: what needs a shorter one comes no further.
@@ -190,19 +192,14 @@ pub(super) fn is_stiff_in_parts(pattern: &Pattern, entries: &[f64], duration: f6
 
 /// Returns the size of the largest eigenvalue of a damped mode; 0 where there is none, or none was
 /// found.
-fn fastest_damped(n: usize, jacobian: Vec<f64>) -> f64 {
+fn fastest_damped(n: usize, mut jacobian: Vec<f64>) -> f64 {
     if let [alone] = jacobian[..] {
         return (-alone).max(0.0);
     }
-    let matrix = nalgebra::DMatrix::from_vec(n, n, jacobian);
-    let Some(schur) = nalgebra::linalg::Schur::try_new(matrix, f64::EPSILON, 1000) else {
-        return 0.0;
-    };
-    let all = schur.complex_eigenvalues();
-    let damped = all
-        .iter()
-        .filter(|l| -l.re > LEAST_DAMPING_RATIO * l.norm());
-    damped.fold(0.0, |m: f64, l| m.max(l.norm()))
+    let all = eigenvalues(&mut jacobian, n).unwrap_or_default();
+    let sizes = all.iter().map(|&(re, im)| (re, hypot(re, im)));
+    let damped = sizes.filter(|(re, size)| -re > LEAST_DAMPING_RATIO * size);
+    damped.fold(0.0, |m: f64, (_, size)| m.max(size))
 }
 
 #[cfg(test)]

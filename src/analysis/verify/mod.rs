@@ -28,7 +28,7 @@ use crate::analysis::direction::Direction;
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::start::dataset::Dataset;
 use crate::analysis::start::nearby::Place;
-use crate::analysis::start::{initial_conditions, misalignment, placement, velocities};
+use crate::analysis::start::{initial_conditions, misalignment, velocities};
 use crate::analysis::warning::{VerificationWarning, Warning};
 use crate::diagnostic::{Diagnostic, Error};
 use crate::expr::measures::Measure;
@@ -383,7 +383,7 @@ impl Verification {
 
 /// Returns starting values of the states, and puts in those of joints.
 pub(super) fn start(scene: &Scene, model: &Model, q: &mut [f64]) -> Vec<f64> {
-    placement::initial_joints(scene, model, q);
+    initial_conditions::initial_joints(scene, model, q);
     let mut x = vec![0.0; scene.layout.n_x];
     for (m, motion) in scene.motions.iter().enumerate() {
         let given = model

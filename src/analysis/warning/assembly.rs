@@ -108,7 +108,15 @@ pub enum AssemblyWarning {
         /// the sum, which is held
         sum: f64,
     },
+    /// loads read a reaction that redundant equations leave open
+    OpenReaction {
+        /// the constraint
+        element: ElementId,
+    },
 }
+
+/// Code of a reaction that loads read and redundant equations leave open.
+pub const OPEN_REACTION: &str = "open_reaction";
 
 impl AssemblyWarning {
     /// Writes a distance and an angle with their directions: "2 mm along ground X and 3 deg about
@@ -140,7 +148,8 @@ impl AssemblyWarning {
             | AssemblyWarning::Coincident { .. }
             | AssemblyWarning::Embedded { .. }
             | AssemblyWarning::LeftOut { .. }
-            | AssemblyWarning::HeldSum { .. } => None,
+            | AssemblyWarning::HeldSum { .. }
+            | AssemblyWarning::OpenReaction { .. } => None,
         }
     }
 
@@ -158,6 +167,7 @@ impl AssemblyWarning {
             AssemblyWarning::LeftOut { .. } => "redundant",
             AssemblyWarning::Moved { .. } | AssemblyWarning::Struck { .. } => "leap",
             AssemblyWarning::HeldSum { .. } => "held_sum",
+            AssemblyWarning::OpenReaction { .. } => OPEN_REACTION,
         }
     }
 
@@ -176,7 +186,8 @@ impl AssemblyWarning {
             | AssemblyWarning::LeftOut { element, .. }
             | AssemblyWarning::Moved { element, .. }
             | AssemblyWarning::Struck { element, .. }
-            | AssemblyWarning::HeldSum { element, .. } => element,
+            | AssemblyWarning::HeldSum { element, .. }
+            | AssemblyWarning::OpenReaction { element } => element,
         };
         element.into()
     }
@@ -244,6 +255,11 @@ impl AssemblyWarning {
                 ": its displacements sum up to {sum:.6e} where they are assembled; \
                  that sum is held, not zero"
             ),
+            AssemblyWarning::OpenReaction { .. } => {
+                ": redundant equations leave its reaction open, and a force or friction reads it: \
+                 the smallest reactions are taken, and the motion depends on that choice"
+                    .to_owned()
+            }
         }
     }
 }

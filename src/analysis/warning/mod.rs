@@ -17,7 +17,7 @@ mod run;
 mod unrest;
 mod verification;
 
-pub use assembly::AssemblyWarning;
+pub use assembly::{AssemblyWarning, OPEN_REACTION};
 pub use condition::ConditionWarning;
 pub use run::{RunWarning, Within, jumps};
 pub use unrest::{Rate, Unrest};

@@ -181,6 +181,17 @@ The sum that the assembled position shows is held from there on. Initial conditi
     MARKER/22, PART=2, REULER=-90D,0D,0D  turn the marker until the sum begins at zero",
     },
     Code {
+        name: "open_reaction",
+        summary: "a force or friction reads a reaction that redundant equations leave open",
+        explanation: "\
+Several joints hold the same direction, and no equation says how they share the load: of all reactions that balance it the smallest
+are taken, by least squares. Where only results read them the motion is the same, however it is shared. Here a force or friction
+reads one, so that the motion depends on the share. Weaken joints until none is redundant, as `cognate verify` advises, or let bushings
+share the load by their stiffness.
+
+    JOINT/2, CYLINDRICAL, I=3, J=10      in place of a second REVOLUTE",
+    },
+    Code {
         name: "rank_change",
         summary: "the rank of the constraints changes during the run",
         explanation: "\

@@ -283,6 +283,30 @@ impl<S: Scalar> Equations<'_, S> {
         all.any(|c| (self.named(c)).is_some_and(|m| m == (i, j) || m == (j, i)))
     }
 
+    /// Returns which constraints have a reaction that loads read, as an unknown of the loops:
+    /// indices in the constraints, ascending.
+    pub fn reactions_in_loops(&self) -> Vec<usize> {
+        let scene = self.scene;
+        let mut read: Vec<usize> = Vec::new();
+        for unknown in &scene.loops {
+            let Key::Measure(measure, ids) = unknown.key else {
+                continue;
+            };
+            let element = element_of(measure, ids[0]);
+            let pair = (element.is_none() && measure.row().family == Family::GenericForce)
+                .then_some([(ids[0], ids[1]), (ids[1], ids[0])]);
+            let is_read = |c: &ConstraintElement| {
+                let between = pair.zip(self.named(c));
+                element == Some(c.id) || between.is_some_and(|(pair, named)| pair.contains(&named))
+            };
+            let all = scene.constraints.iter().enumerate();
+            read.extend(all.filter(|(_, c)| is_read(c)).map(|(k, _)| k));
+        }
+        read.sort_unstable();
+        read.dedup();
+        read
+    }
+
     /// Numbers of the markers between which a constraint acts: floating ones where contacts of
     /// curves have them.
     fn named(&self, element: &ConstraintElement) -> Option<(u32, u32)> {

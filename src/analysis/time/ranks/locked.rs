@@ -10,9 +10,9 @@ use nalgebra::DVector;
 /// Length of a combination of rows, against the longest row, below which a mechanism counts as
 /// locked: near the end of a reach it falls with the square root of the way left.
 const NEARLY_DEPENDENT: f64 = 0.02;
-/// Displacement of a motion by which its push is measured, rad or units of length.
+/// Displacement of a motion by which its push is measured, rad or parts of the length of the scene.
 const DISPLACEMENT: f64 = 1e-6;
-/// Push of a motion along the combination, per time, below which it drives elsewhere.
+/// Change of the combination over that displacement, below which a motion drives elsewhere.
 const LEAST_PUSH: f64 = 1e-9;
 
 /// The reason why the rows can be kept no longer near a state: the worst row, and the motion that
@@ -72,14 +72,20 @@ fn driver(scene: Configured<'_>, numbers: &[f64], rows: &[usize], factors: &[f64
     };
     let (still, _) = at_motions(&values);
     let push = |k: usize| {
+        let unit = scene.unit_of_motion(k);
         let mut other = values.clone();
-        other[k] += DISPLACEMENT;
+        other[k] += DISPLACEMENT * unit;
         let (g, _) = at_motions(&other);
-        ((along(&g) - along(&still)) / DISPLACEMENT * at.prescribed(k).first).abs()
+        let push = (along(&g) - along(&still)) / DISPLACEMENT;
+        if push.abs() > LEAST_PUSH {
+            (push * at.prescribed(k).first / unit).abs()
+        } else {
+            0.0
+        }
     };
     let pushes: Vec<f64> = (0..values.len()).map(push).collect();
     (0..values.len())
         .max_by(|&i, &j| pushes[i].total_cmp(&pushes[j]))
-        .filter(|&k| pushes[k] > LEAST_PUSH)
+        .filter(|&k| pushes[k] > 0.0)
         .map(|k| scene.motions[k].id)
 }
