@@ -293,7 +293,7 @@ impl<'m> Builder<'m> {
     /// gyration, 0 where there is none: moving and turning the whole model does not change them.
     fn extents(&self) -> [f64; 2] {
         let s = &self.scene;
-        let diameter = s.diameter(|_| true);
+        let diameter = s.diameter(0..s.markers.len());
         let gyration = self.model.parts.values().map(|part| {
             let largest = part.ip[..3].iter().fold(0.0_f64, |m, i| m.max(*i));
             (largest / part.mass).sqrt()

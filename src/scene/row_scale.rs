@@ -24,14 +24,11 @@ impl Scene {
         }
     }
 
-    /// Returns the diameter of the places of markers on parts as the dataset has them, 0 where that
-    /// is rounding of how far they are from the origin. `counts`: which parts count.
-    pub(in crate::scene) fn diameter(&self, counts: impl Fn(usize) -> bool) -> f64 {
-        let points = self.markers.iter().filter_map(|m| {
-            let part = &self.parts[m.part.filter(|&p| counts(p))?];
-            let in_part = part.frame.inverse().point(m.frame.position);
-            Some(part.initial.point(in_part))
-        });
+    /// Returns the diameter of the places of markers as the dataset has them, 0 where that is
+    /// rounding of how far they are from the origin. Those of ground do not count.
+    pub(in crate::scene) fn diameter(&self, markers: impl Iterator<Item = usize>) -> f64 {
+        let moving = markers.filter(|&m| self.markers[m].part.is_some());
+        let points = moving.map(|m| self.drawn(m).position);
         let points = points.filter(|p| p.norm().is_finite());
         let points: Vec<Vec3<f64>> = points.collect();
         // about the middle, so that a model that is turned keeps its size
@@ -47,11 +44,11 @@ impl Scene {
         if diameter > noise { diameter } else { 0.0 }
     }
 
-    /// Returns the size of a mechanism of these parts (ascending), as the dataset places it: its
+    /// Returns the size of a mechanism of these parts and markers, as the dataset places it: its
     /// diameter, else its largest radius of gyration, else how far it is from the origin; 1 where
     /// it has none of these.
-    pub fn size_of(&self, parts: &[usize]) -> f64 {
-        let diameter = self.diameter(|p| parts.binary_search(&p).is_ok());
+    pub fn size_of(&self, parts: &[usize], markers: &[usize]) -> f64 {
+        let diameter = self.diameter(markers.iter().copied());
         let gyration = parts.iter().filter_map(|&p| {
             let link = &self.links[self.parts[p].link?];
             let [x, y, z] = [0, 1, 2].map(|k| link.inertia.0[k][k]);

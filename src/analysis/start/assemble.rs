@@ -7,6 +7,7 @@
 use crate::analysis::direction::{Axis, Direction};
 use crate::analysis::look::Look;
 use crate::analysis::quantity::{length, short};
+use crate::analysis::start::mechanisms::{Mechanism, mechanisms};
 use crate::analysis::start::{alignment, branch, nearby};
 use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::arrange::Arrange;
@@ -20,7 +21,7 @@ use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::{Equations, row_name};
 use crate::scene::mover::Mover;
-use crate::scene::programs::{weights, weights_at};
+use crate::scene::programs::weights;
 use crate::scene::{RowKind, Scene};
 use crate::space::Frame;
 use nalgebra::{DMatrix, DVector};
@@ -33,6 +34,15 @@ pub const DEPENDENT: f64 = 1e-8;
 pub(super) const EMPTY: f64 = 1e-9;
 /// Residual of a row that holds, at most, as a part of its scale.
 pub const CLOSED: f64 = 1e-10;
+
+/// Residual of a row, as a part of its scale, that is rounding.
+const ROUNDING: f64 = 1e-13;
+/// Iterations that close rows, at most.
+const MAX_ITERATIONS: usize = 100;
+/// Longest change of a coordinate in one of them, rad or parts of the mechanism's size.
+const LONGEST_STEP: f64 = 0.5;
+/// Smallest part of a step that is tried.
+const SHORTEST_PART: f64 = 1e-6;
 
 /// Residual, relative to its scale and to the worst of all, below which a row is not told.
 const LEAST_GAP: f64 = 1e-4;
@@ -348,14 +358,7 @@ pub(super) fn close_while<E>(
     ignored: impl Fn(Configured<'_>, usize) -> bool,
     look: &mut dyn FnMut() -> Result<(), E>,
 ) -> Result<Closed, E> {
-    // these changes do not depend on how far from the origin it is
-    let w = weights_at(scene, scene.size);
     let mover = Mover::new(scene);
-    let worst = |g: &DVector<f64>| {
-        (0..g.len())
-            .map(|r| relative(scene, r, g[r]))
-            .fold(0.0, f64::max)
-    };
     // contacts on curves go along
     let rows_at = |configuration: &mut Configuration, q: &[f64]| {
         let still = vec![0.0; scene.layout.n_v];
@@ -371,42 +374,147 @@ pub(super) fn close_while<E>(
         (g, gradient)
     };
     let (mut g, mut gradient) = rows_at(configuration, q);
-    let mut size = worst(&g);
+    let worst = |g: &DVector<f64>| {
+        (0..g.len())
+            .map(|r| relative(scene, r, g[r]))
+            .fold(0.0, f64::max)
+    };
     let mut iterations = 0;
-    while size > 1e-13 && iterations < 100 {
+    if worst(&g) <= ROUNDING {
+        let size = worst(&g);
+        return Ok(Closed {
+            iterations,
+            size,
+            g,
+        });
+    }
+    let all = mechanisms(scene, gradient.iter());
+    let mut closing: Vec<Closing> = all.iter().map(Closing::new).collect();
+    let mut w = vec![1.0; scene.layout.n_v];
+    for mechanism in &all {
+        for &v in &mechanism.velocities {
+            w[v] = mechanism.unit(v).powi(2);
+        }
+    }
+    while iterations < MAX_ITERATIONS {
         look()?;
-        let step = least_change(&gradient, &w, &(-&g));
-        let longest = step
-            .iter()
-            .enumerate()
-            .map(|(v, s)| s.abs() / w[v].sqrt())
-            .fold(0.0, f64::max);
-        let mut damping = (0.5 / longest).min(1.0);
-        let mut better = false;
-        while damping > 1e-6 {
-            let mut trial = q.to_vec();
-            mover.displace(&mut trial, (&step * damping).as_slice());
+        // each mechanism by itself
+        let mut asked = gradient.clone();
+        for one in &mut closing {
+            one.begin(scene, &g);
+            if one.is_done {
+                one.mechanism.rows.iter().for_each(|&r| asked[r].clear());
+            }
+        }
+        if closing.iter().all(|one| one.is_done) {
+            break;
+        }
+        let step = least_change(&asked, &w, &(-&g));
+        closing.iter_mut().for_each(|one| one.shorten(&step, &w));
+        loop {
+            let mut change = vec![0.0; w.len()];
+            closing
+                .iter()
+                .for_each(|one| one.change(&step, &mut change));
+            let (mut moved, mut trial) = (q.to_vec(), q.to_vec());
+            mover.displace(&mut moved, &change);
+            mover.take_over(&mut trial, &moved, &change);
             let contacts = configuration.contacts.clone();
             let (g1, gradient1) = rows_at(configuration, &trial);
-            if g1.norm() < g.norm() {
+            let mut leads_nearer = true;
+            for one in closing.iter_mut().filter(|one| one.is_trying()) {
+                leads_nearer &= one.see(&g1);
+            }
+            if leads_nearer {
                 q.copy_from_slice(&trial);
-                (g, gradient, better) = (g1, gradient1, true);
+                (g, gradient) = (g1, gradient1);
                 break;
             }
             configuration.contacts = contacts;
-            damping *= 0.5;
         }
         iterations += 1;
-        size = worst(&g);
-        if !better {
-            break;
-        }
     }
+    let size = worst(&g);
     Ok(Closed {
         iterations,
         size,
         g,
     })
+}
+
+/// How far the closing of a mechanism has come.
+struct Closing<'m> {
+    mechanism: &'m Mechanism,
+    /// residuals before the step
+    size: f64,
+    /// the part of the step that is tried, 0 for none
+    part: f64,
+    /// its step is one that leads nearer
+    is_nearer: bool,
+    /// it is closed, or no step leads nearer
+    is_done: bool,
+}
+
+impl<'m> Closing<'m> {
+    fn new(mechanism: &'m Mechanism) -> Self {
+        Self {
+            mechanism,
+            size: 0.0,
+            part: 0.0,
+            is_nearer: false,
+            is_done: false,
+        }
+    }
+
+    /// Begins an iteration at these residuals.
+    fn begin(&mut self, scene: &Scene, g: &DVector<f64>) {
+        let rows = self.mechanism.rows.iter();
+        self.is_done |= rows.clone().all(|&r| relative(scene, r, g[r]) <= ROUNDING);
+        self.size = self.norm(g);
+        self.is_nearer = false;
+    }
+
+    fn norm(&self, g: &DVector<f64>) -> f64 {
+        let rows = self.mechanism.rows.iter();
+        rows.map(|&r| g[r] * g[r]).sum::<f64>().sqrt()
+    }
+
+    /// Tries so much of a step as may be made at once.
+    fn shorten(&mut self, step: &DVector<f64>, w: &[f64]) {
+        let sizes = self.mechanism.velocities.iter();
+        let longest = sizes
+            .map(|&v| step[v].abs() / w[v].sqrt())
+            .fold(0.0, f64::max);
+        self.part = if self.is_done {
+            0.0
+        } else {
+            (LONGEST_STEP / longest).min(1.0)
+        };
+    }
+
+    /// Returns whether a part of the step is still sought that leads nearer.
+    fn is_trying(&self) -> bool {
+        !self.is_done && !self.is_nearer
+    }
+
+    /// Puts the part of the step that is tried into a change of all velocities.
+    fn change(&self, step: &DVector<f64>, change: &mut [f64]) {
+        if !self.is_done {
+            for &v in &self.mechanism.velocities {
+                change[v] = self.part * step[v];
+            }
+        }
+    }
+
+    /// Sees the residuals where the step leads; returns whether they are smaller.
+    fn see(&mut self, g: &DVector<f64>) -> bool {
+        self.is_nearer = self.norm(g) < self.size;
+        if !self.is_nearer {
+            self.part *= 0.5;
+            self.is_done = self.part.is_nan() || self.part <= SHORTEST_PART;
+        }
+        self.is_nearer
+    }
 }
 
 /// Moves `q` to positions that satisfy all rows at time `t`, and finds which rows depend on others.

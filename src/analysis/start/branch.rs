@@ -13,23 +13,21 @@
 //! ```
 //!
 //! Motions of several body angles between the same markers drive a frame or an axis, as (1) or (2).
-//! [`turn`] makes these turns together, by least changes, with all other rows as they are; from
-//! there the rows themselves are closed. It is asked for only where the rows alone have failed or
+//! [`turn`] makes these turns together, with all other rows as they are, and moves parts as little
+//! as may be; from there the rows themselves are closed. It is asked for only where the rows alone have failed or
 //! have led to an opposite.
 
-use crate::analysis::start::assemble::{least_change, merged, numbers, rows_at_rest};
+use crate::analysis::start::assemble::numbers;
+use crate::analysis::start::initial_conditions::Wanted;
+use crate::analysis::start::nearest::{Origin, nearest};
 use crate::model::ElementId;
 use crate::physics::action::Action;
 use crate::physics::row::{Drive, Law, about_the_middle, body_angles};
 use crate::scalar::{Scalar, hypot};
-use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::Equations;
-use crate::scene::mover::Mover;
-use crate::scene::programs::weights;
 use crate::scene::{ConstraintElement, RowKind, Scene};
 use crate::space::{Frame, Mat3, Vec3, rotation};
-use nalgebra::DVector;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 /// Turn that is left where rows hold on their branch, at most, in rad.
@@ -45,13 +43,6 @@ const LEAST_SHARE: f64 = 0.1;
 const NO_DIRECTION: f64 = 1e-7;
 /// Normals that are tried where two axes are opposite.
 pub(super) const NORMALS: usize = 4;
-/// Velocities of the largest mechanism whose branch is chosen.
-const MAX_VELOCITIES: usize = 300;
-const MAX_ITERATIONS: usize = 60;
-/// Longest change of a coordinate in one iteration, rad or parts of the mechanism's size.
-const LONGEST_STEP: f64 = 0.5;
-/// Change of a coordinate at which the iteration has converged.
-const ARRIVED: f64 = 1e-9;
 
 /// A turn of marker I against J that an element still asks for.
 #[derive(Clone, Debug)]
@@ -79,6 +70,16 @@ impl Turn {
             markers,
             about,
         }
+    }
+
+    /// Returns its equations: the angles that are left, negative, and their slopes along the
+    /// velocities.
+    pub(super) fn equations(&self, at: &Equations<'_, f64>) -> Vec<(f64, Vec<(usize, f64)>)> {
+        let (i, j) = self.markers;
+        let about = self.about.iter();
+        about
+            .map(|&(axis, by)| (-by, at.gradient_of(&against(i, j, axis))))
+            .collect()
     }
 
     /// Returns the turn as a rotation vector in ground.
@@ -419,56 +420,19 @@ pub fn turn(
     x: &[f64],
     normal: usize,
 ) -> bool {
-    let l = scene.layout;
-    if l.n_v == 0 || l.n_v > MAX_VELOCITIES {
-        return false;
-    }
-    let w = weights(scene);
-    let mover = Mover::new(scene);
-    let still = vec![0.0; l.n_v];
-    let mut left = f64::INFINITY;
-    for _ in 0..MAX_ITERATIONS {
-        // the rows that are no turns
-        let here = numbers(scene.within(configuration), t, q, &still, x);
-        cams::track(scene, configuration, &here);
-        let configured = scene.within(configuration);
-        let (mut g, mut gradient) = rows_at_rest(configured, t, q, x);
-        for r in (0..g.len()).filter(|&r| turns_or_held(configured, r)) {
-            g[r] = 0.0;
-            gradient[r].clear();
-        }
-        // the turns
-        let at = Equations::new(configured, &here);
-        let asked = turns(configured, &at, normal);
-        left = asked.iter().map(|turn| turn.left).fold(0.0, f64::max);
-        let wanted: Vec<_> = asked
-            .iter()
-            .flat_map(|turn| {
-                turn.about
-                    .iter()
-                    .map(|&(axis, by)| (turn.markers, axis, by))
-            })
-            .collect();
-        let m = g.len();
-        let mut a = gradient;
-        let mut b = (-g).insert_rows(m, wanted.len(), 0.0);
-        for (k, &((i, j), axis, by)) in wanted.iter().enumerate() {
-            a.push(merged(at.gradient_of(&against(i, j, axis))));
-            b[m + k] = by;
-        }
-        // a step
-        let step: DVector<f64> = least_change(&a, &w, &b);
-        let size = |v: usize| step[v].abs() / w[v].sqrt();
-        let longest = (0..w.len()).map(size).fold(0.0, f64::max);
-        if !longest.is_finite() {
-            return false;
-        }
-        if longest < ARRIVED {
-            break;
-        }
-        mover.displace(q, (&step * (LONGEST_STEP / longest).min(1.0)).as_slice());
-    }
-    left < NEAR_BRANCH
+    let wanted = Wanted::turns(normal);
+    nearest(
+        (scene, configuration),
+        (None, &wanted),
+        t,
+        q,
+        x,
+        Origin::EachStep,
+    );
+    let here = scene.within(configuration);
+    let numbers = numbers(here, t, q, &vec![0.0; scene.layout.n_v], x);
+    let left = turns(here, &Equations::new(here, &numbers), normal);
+    left.iter().all(|turn| turn.left < NEAR_BRANCH)
 }
 
 /// Returns the unit torque on I about an axis, and its opposite on J: its component along a
@@ -479,13 +443,4 @@ pub(super) fn against(i: usize, j: usize, axis: Vec3<f64>) -> [(usize, Action<f6
         torque,
     };
     [(i, torque(axis)), (j, torque(-axis))]
-}
-
-/// Returns whether a row is read as a turn, or asks for nothing yet.
-fn turns_or_held(scene: Configured<'_>, r: usize) -> bool {
-    let turns = match &scene.rows[r].kind {
-        RowKind::Markers { law, .. } => !law.is_length(),
-        RowKind::Displacements(_) | RowKind::Formula { .. } | RowKind::Cam { .. } => false,
-    };
-    turns || scene.is_held(r)
 }

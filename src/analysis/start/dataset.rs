@@ -10,7 +10,7 @@ use crate::analysis::start::alignment;
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::start::branch;
 use crate::analysis::start::initial_conditions::{self, InitialCondition, Wanted};
-use crate::analysis::start::nearest::nearest;
+use crate::analysis::start::nearest::{Origin, nearest};
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::scene::Scene;
@@ -114,7 +114,12 @@ impl<'a> Dataset<'a> {
         let numbers = assemble::numbers(here, t, q, &vec![0.0; scene.layout.n_v], x);
         let wanted = Wanted::new(here, &self.conditions, &numbers);
         let place = (scene, &mut *configuration);
-        nearest(place, (model, &wanted), t, q, x, placed);
+        let origin = if placed {
+            Origin::Drawn
+        } else {
+            Origin::Beginning
+        };
+        nearest(place, (Some(model), &wanted), t, q, x, origin);
         look()?;
         let assembly = assemble::positions_while(scene, configuration, t, q, x, look)?;
         Ok((assembly, wanted.starts))

@@ -369,15 +369,18 @@ impl Equation {
     }
 }
 
-/// Everything that is wanted of a position beside its rows: conditions, orientations, and where
-/// contacts begin.
+/// Everything that is wanted of a position beside its rows: conditions, orientations, where contacts
+/// begin; or the turns of orientation rows in place of these rows.
+#[derive(Default)]
 pub(super) struct Wanted {
     conditions: Vec<InitialCondition>,
-    /// the quantities of the conditions
-    quantities: Program,
+    /// the quantities of the conditions; `None` where there are none
+    quantities: Option<Program>,
     orientations: Vec<Orientation>,
     /// where contacts are asked to begin
     pub starts: Vec<Start>,
+    /// orientation rows are read as turns, with this normal where axes are opposite
+    turns: Option<usize>,
 }
 
 impl Wanted {
@@ -392,22 +395,36 @@ impl Wanted {
             !c.driven && c.orientation.is_none() && !of_part
         };
         let conditions: Vec<_> = conditions.iter().filter(is_own).cloned().collect();
-        let (quantities, _) = record_with_complaints(scene, |at| {
-            conditions.iter().map(|c| c.quantity(&scene, at)).collect()
+        let quantities = (!conditions.is_empty()).then(|| {
+            let (quantities, _) = record_with_complaints(scene, |at| {
+                conditions.iter().map(|c| c.quantity(&scene, at)).collect()
+            });
+            quantities
         });
         Self {
             conditions,
             quantities,
             orientations,
             starts: cams::starts(scene, numbers),
+            turns: None,
         }
     }
 
-    /// Returns whether a row is that of a contact which is asked to begin somewhere.
-    pub fn asks_for_contact_of(&self, scene: &Scene, row: usize) -> bool {
+    /// Asks for the turns of orientation rows, with this normal where axes are opposite.
+    pub fn turns(normal: usize) -> Self {
+        Self {
+            turns: Some(normal),
+            ..Self::default()
+        }
+    }
+
+    /// Returns whether equations stand in place of a row: of a contact that is asked to begin
+    /// somewhere, and of an orientation that is read as a turn.
+    pub fn replaces(&self, scene: &Scene, row: usize) -> bool {
         match scene.rows[row].kind {
             RowKind::Cam { cam, .. } => self.starts.iter().any(|start| start.cam == cam),
-            _ => false,
+            RowKind::Markers { law, .. } => self.turns.is_some() && !law.is_length(),
+            RowKind::Displacements(_) | RowKind::Formula { .. } => false,
         }
     }
 
@@ -428,14 +445,21 @@ impl Wanted {
                 is_length: true,
             }));
         }
+        let mut turns: Vec<(f64, SparseRow)> = Vec::new();
         for o in &self.orientations {
             let left = o.left(&at).into_iter();
-            found.extend(left.map(|(axis, by)| Equation {
-                residual: -by,
-                gradient: sorted(o.slope(&at, axis)),
-                is_length: false,
-            }));
+            turns.extend(left.map(|(axis, by)| (-by, o.slope(&at, axis))));
         }
+        if let Some(normal) = self.turns {
+            for turn in branch::turns(scene, &at, normal) {
+                turns.extend(turn.equations(&at));
+            }
+        }
+        found.extend(turns.into_iter().map(|(residual, gradient)| Equation {
+            residual,
+            gradient: sorted(gradient),
+            is_length: false,
+        }));
         found.retain(|e| {
             e.residual.is_finite() && e.gradient.iter().all(|(_, slope)| slope.is_finite())
         });
@@ -443,13 +467,12 @@ impl Wanted {
     }
 
     fn of_conditions(&self, scene: &Scene, numbers: &[f64], mover: &Mover) -> Vec<Equation> {
-        if self.conditions.is_empty() {
+        let Some(quantities) = &self.quantities else {
             return Vec::new();
-        }
+        };
         let l = scene.layout;
         let mut values = vec![0.0; self.conditions.len()];
-        self.quantities
-            .run(numbers, &mut Work::default(), &mut values);
+        quantities.run(numbers, &mut Work::default(), &mut values);
         let mut directions = vec![Direction::new(); l.n_v];
         for (v, place, slope) in mover.tangents(&numbers[l.q()]) {
             directions[v].push((l.q_at(place), slope));
@@ -457,7 +480,7 @@ impl Wanted {
         let all = numbers.iter().copied();
         let nothing = |_: &mut [_], _| Ok(());
         let Ok::<_, Infallible>(slopes) = along(
-            &self.quantities,
+            quantities,
             &mut Work::default(),
             all,
             &directions,

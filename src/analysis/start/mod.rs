@@ -11,6 +11,7 @@ mod given_velocities;
 pub(super) mod initial_conditions;
 mod kinetic;
 pub mod leap;
+mod mechanisms;
 pub mod misalignment;
 pub mod nearby;
 mod nearest;

@@ -33,8 +33,9 @@
 
 use crate::analysis::start::assemble;
 use crate::analysis::start::initial_conditions::{Equation, Wanted};
+use crate::analysis::start::mechanisms::{Mechanism, mechanisms};
 use crate::model::Model;
-use crate::numeric::connected::{SparseRow, connected};
+use crate::numeric::connected::SparseRow;
 use crate::numeric::sparse::Factors;
 use crate::scene::configuration::Configuration;
 use crate::scene::equations::Equations;
@@ -55,15 +56,20 @@ const IN_PLACE: f64 = 1e-9;
 /// Change of a coordinate at which the iteration has converged.
 const ARRIVED: f64 = 1e-11;
 
-/// Links that hang together, and what acts on them: indices in the scene, ascending.
-#[derive(Clone, Debug, Default)]
-struct Mechanism {
-    links: Vec<usize>,
-    velocities: Vec<usize>,
-    parts: Vec<usize>,
-    rows: Vec<usize>,
-    /// its size as it is drawn
-    size: f64,
+/// The places from which the places of parts count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Origin {
+    /// where they are drawn
+    Drawn,
+    /// where they are in the beginning; where they are drawn for what EXACT names
+    Beginning,
+    /// where each iteration begins: each step is short
+    EachStep,
+}
+
+/// The way of a mechanism to its place.
+struct Way {
+    mechanism: Mechanism,
     /// multipliers of its rows, then of what is given
     multipliers: Vec<f64>,
     /// it is in place, or no step leads anywhere
@@ -83,15 +89,15 @@ struct Position<'a> {
     from: &'a [Frame<f64>],
 }
 
-/// Moves `q` to the position nearest to where parts are drawn, or, without `drawn`, to where they
-/// are; contacts on curves go along, and are where they are asked to begin as far as that can be.
+/// Moves `q` to the nearest position; contacts on curves go along, and are where they are asked to
+/// begin as far as that can be.
 pub(super) fn nearest(
     (scene, configuration): (&Scene, &mut Configuration),
-    (model, wanted): (&Model, &Wanted),
+    (model, wanted): (Option<&Model>, &Wanted),
     t: f64,
     q: &mut [f64],
     x: &[f64],
-    drawn: bool,
+    origin: Origin,
 ) {
     let n_v = scene.layout.n_v;
     if n_v == 0 {
@@ -99,12 +105,19 @@ pub(super) fn nearest(
     }
     let still = vec![0.0; n_v];
     let firm: Vec<[bool; 6]> = (scene.parts.iter())
-        .map(|part| model.body(part.id).map_or([false; 6], |data| data.exact))
+        .map(|part| {
+            model
+                .and_then(|m| m.body(part.id))
+                .map_or([false; 6], |data| data.exact)
+        })
         .collect();
-    let from = places(scene, configuration, (t, q, x), (&firm, drawn));
+    let mut from = places(scene, configuration, (t, q, x), (&firm, origin));
     let mover = Mover::new(scene);
-    let mut mechanisms: Option<Vec<Mechanism>> = None;
+    let mut ways: Option<Vec<Way>> = None;
     for k in 0..MAX_ITERATIONS {
+        if k > 0 && origin == Origin::EachStep {
+            from = places(scene, configuration, (t, q, x), (&firm, origin));
+        }
         let numbers = assemble::numbers(scene.within(configuration), t, q, &still, x);
         cams::track(scene, configuration, &numbers);
         cams::place(scene, configuration, &wanted.starts, &numbers);
@@ -112,11 +125,12 @@ pub(super) fn nearest(
         let (g, mut gradient) = assemble::rows_at_rest(here, t, q, x);
         let mut g: Vec<f64> = g.iter().copied().collect();
         let given = wanted.equations(here, &numbers, &mover);
-        let mechanisms = mechanisms.get_or_insert_with(|| {
+        let ways = ways.get_or_insert_with(|| {
             let of_given = given.iter().map(|e| &e.gradient);
-            of(scene, gradient.iter().chain(of_given))
+            let all = mechanisms(scene, gradient.iter().chain(of_given)).into_iter();
+            all.map(Way::new).collect()
         });
-        for r in (0..g.len()).filter(|&r| scene_ignores(here.is_held(r), wanted, scene, r)) {
+        for r in (0..g.len()).filter(|&r| here.is_held(r) || wanted.replaces(scene, r)) {
             g[r] = 0.0;
             gradient[r].clear();
         }
@@ -131,14 +145,14 @@ pub(super) fn nearest(
             from: &from,
         };
         let mut change = vec![0.0; n_v];
-        for mechanism in mechanisms.iter_mut().filter(|m| !m.is_done) {
-            if k == 0 && position.is_in_place(mechanism) {
-                mechanism.is_done = true;
+        for way in ways.iter_mut().filter(|way| !way.is_done) {
+            if k == 0 && position.is_in_place(&way.mechanism) {
+                way.is_done = true;
                 continue;
             }
-            mechanism.step(&position, &mut change);
+            way.step(&position, &mut change);
         }
-        if mechanisms.iter().all(|m| m.is_done) && change.iter().all(|x| *x == 0.0) {
+        if ways.iter().all(|way| way.is_done) && change.iter().all(|x| *x == 0.0) {
             break;
         }
         let mut moved = q.to_vec();
@@ -149,21 +163,15 @@ pub(super) fn nearest(
     cams::place(scene, configuration, &wanted.starts, &numbers);
 }
 
-/// Returns whether a row has no say: it is held, or its contact is asked to begin somewhere, which
-/// is an equation of its own.
-fn scene_ignores(is_held: bool, wanted: &Wanted, scene: &Scene, r: usize) -> bool {
-    is_held || wanted.asks_for_contact_of(scene, r)
-}
-
 /// Returns from where the places of parts count: as drawn, or as they are; what EXACT names counts
 /// from where it is drawn.
 fn places(
     scene: &Scene,
     configuration: &Configuration,
     (t, q, x): (f64, &[f64], &[f64]),
-    (firm, drawn): (&[[bool; 6]], bool),
+    (firm, origin): (&[[bool; 6]], Origin),
 ) -> Vec<Frame<f64>> {
-    if drawn {
+    if origin == Origin::Drawn {
         return scene.parts.iter().map(|part| part.initial).collect();
     }
     let here = scene.within(configuration);
@@ -186,63 +194,6 @@ fn places(
         }
     };
     firm.iter().enumerate().map(place).collect()
-}
-
-/// Finds the mechanisms of a scene whose rows, and then what is given, have these gradients.
-fn of<'g>(scene: &Scene, gradients: impl Iterator<Item = &'g SparseRow>) -> Vec<Mechanism> {
-    let mut link_of = vec![0; scene.layout.n_v];
-    for freedom in &scene.freedoms {
-        if let Some(v) = freedom.v {
-            link_of[v] = freedom.link;
-        }
-    }
-    let carried = scene.links.iter().enumerate().map(|(l, link)| {
-        let both = [Some(l), link.parent].into_iter().flatten();
-        both.map(|l| (l, 1.0)).collect::<SparseRow>()
-    });
-    let mut ties: Vec<SparseRow> = carried.collect();
-    let of_row = |row: &SparseRow| row.iter().map(|&(v, _)| (link_of[v], 1.0)).collect();
-    ties.extend(gradients.map(of_row));
-    // a slope that is zero here need not stay so
-    ties.extend(scene.constraints.iter().map(|element| {
-        let pair = element.markers.into_iter().flat_map(|(i, j)| [i, j]);
-        let markers = pair.chain(element.acts_on.iter().copied());
-        let links = markers.filter_map(|m| scene.markers[m].link);
-        links.map(|l| (l, 1.0)).collect()
-    }));
-    let n_links = scene.links.len();
-    let mut all: Vec<Mechanism> = Vec::new();
-    let mut own = vec![None; n_links];
-    for block in connected(&ties, n_links) {
-        if block.columns.is_empty() {
-            continue;
-        }
-        block.columns.iter().for_each(|&l| own[l] = Some(all.len()));
-        let rows = block
-            .rows
-            .iter()
-            .filter(|&&r| (n_links..n_links + scene.rows.len()).contains(&r));
-        all.push(Mechanism {
-            rows: rows.map(|&r| r - n_links).collect(),
-            links: block.columns,
-            ..Mechanism::default()
-        });
-    }
-    for (v, &link) in link_of.iter().enumerate() {
-        if let Some(k) = own[link] {
-            all[k].velocities.push(v);
-        }
-    }
-    for (k, part) in scene.parts.iter().enumerate() {
-        if let Some(m) = part.link.and_then(|l| own[l]) {
-            all[m].parts.push(k);
-        }
-    }
-    for mechanism in &mut all {
-        mechanism.size = scene.size_of(&mechanism.parts);
-        mechanism.is_done = mechanism.velocities.is_empty();
-    }
-    all
 }
 
 impl Position<'_> {
@@ -308,54 +259,54 @@ impl Matrix {
     }
 }
 
-impl Mechanism {
+impl Way {
+    fn new(mechanism: Mechanism) -> Self {
+        Self {
+            is_done: mechanism.velocities.is_empty(),
+            mechanism,
+            multipliers: Vec::new(),
+        }
+    }
+
     /// Puts the step of Gauss and Newton (2) into the changes of its velocities; it is done where
     /// that is next to nothing, or no number.
     fn step(&mut self, position: &Position<'_>, change: &mut [f64]) {
-        let given: Vec<&Equation> = position.given_to(self).collect();
+        let m = &self.mechanism;
+        let given: Vec<&Equation> = position.given_to(m).collect();
         let Some(x) = self.solved(position, &given) else {
             self.is_done = true;
             return;
         };
-        let n = self.velocities.len();
+        let n = m.velocities.len();
         let longest = x[..n].iter().fold(0.0, |m: f64, d| m.max(d.abs()));
         if !longest.is_finite() {
             self.is_done = true;
             return;
         }
         let damping = (LONGEST_STEP / longest).min(1.0);
-        for (&v, d) in self.velocities.iter().zip(&x) {
-            change[v] = damping * d * self.unit(position.scene, v);
+        for (&v, d) in m.velocities.iter().zip(&x) {
+            change[v] = damping * d * m.unit(v);
         }
-        let at = n + 12 * self.links.len();
+        let at = n + 12 * m.links.len();
         self.multipliers = x[at..].to_vec();
         self.is_done = longest < ARRIVED;
     }
 
-    /// Returns what counts as one of a velocity: rad, or the size of the mechanism.
-    fn unit(&self, scene: &Scene, v: usize) -> f64 {
-        let own = scene.freedoms.iter().find(|f| f.v == Some(v));
-        if own.is_some_and(|f| f.turn) {
-            1.0
-        } else {
-            self.size
-        }
-    }
-
     /// Solves (2), scaled: velocities, twists of links, what carries them bear, rows, given values.
     fn solved(&self, position: &Position<'_>, given: &[&Equation]) -> Option<Vec<f64>> {
-        let (scene, size) = (position.scene, self.size);
+        let m = &self.mechanism;
+        let (scene, size) = (position.scene, m.size);
         let links = position.at.links();
-        let (n, n_links) = (self.velocities.len(), self.links.len());
+        let (n, n_links) = (m.velocities.len(), m.links.len());
         let [twist, load] = [n, n + 6 * n_links];
         let row = n + 12 * n_links;
-        let all = row + self.rows.len() + given.len();
+        let all = row + m.rows.len() + given.len();
         let (mut a, mut b) = (Matrix::default(), vec![0.0; all]);
-        let local = |l: usize| self.links.binary_search(&l).ok();
+        let local = |l: usize| m.links.binary_search(&l).ok();
         // about the origin of its first link
-        let center = links[self.links[0]].X_GL.position;
+        let center = links[m.links[0]].X_GL.position;
         let arm = |p: Vec3<f64>| (p - center).times(1.0 / size);
-        for (k, &l) in self.links.iter().enumerate() {
+        for (k, &l) in m.links.iter().enumerate() {
             for c in 0..6 {
                 a.add_both(twist + 6 * k + c, load + 6 * k + c, 1.0);
             }
@@ -370,7 +321,7 @@ impl Mechanism {
             let Some((k, v)) = local(freedom.link).zip(freedom.v) else {
                 continue;
             };
-            let Ok(v) = self.velocities.binary_search(&v) else {
+            let Ok(v) = m.velocities.binary_search(&v) else {
                 continue;
             };
             let X = &links[freedom.link].X_GL;
@@ -384,7 +335,7 @@ impl Mechanism {
                 a.add_both(v, load + 6 * k + c, -s);
             }
         }
-        for &part in &self.parts {
+        for &part in &m.parts {
             if let Some(k) = scene.parts[part].link.and_then(local) {
                 let arm = arm(position.at.part(part, false).p_GM);
                 add_part(position, (part, size), arm, twist + 6 * k, (&mut a, &mut b));
@@ -392,25 +343,25 @@ impl Mechanism {
         }
         // what is given may have no slopes for a while
         let mut before = self.multipliers.clone();
-        before.resize(self.rows.len() + given.len(), 0.0);
-        let velocity = |v: usize| self.velocities.binary_search(&v).ok();
+        before.resize(m.rows.len() + given.len(), 0.0);
+        let velocity = |v: usize| m.velocities.binary_search(&v).ok();
         let mut add_row = |i: usize, gradient: &SparseRow, one: f64, compliance: f64| {
             for &(v, x) in gradient {
                 if let Some(k) = velocity(v) {
-                    a.add_both(k, i, x * self.unit(scene, v) / one);
+                    a.add_both(k, i, x * m.unit(v) / one);
                 }
             }
             a.add(i, i, -compliance);
         };
-        for (k, &r) in self.rows.iter().enumerate() {
+        for (k, &r) in m.rows.iter().enumerate() {
             let one = scene.row_scale_at(r, size);
             add_row(row + k, &position.gradient[r], one, DEPENDENT);
             b[row + k] = -position.g[r] / one - DEPENDENT * before[k];
         }
         for (k, e) in given.iter().enumerate() {
-            let i = row + self.rows.len() + k;
+            let i = row + m.rows.len() + k;
             add_row(i, &e.gradient, e.one(size), GIVEN);
-            b[i] = -e.residual / e.one(size) - GIVEN * before[self.rows.len() + k];
+            b[i] = -e.residual / e.one(size) - GIVEN * before[m.rows.len() + k];
         }
         for k in 0..n {
             a.add(k, k, DEPENDENT);
