@@ -477,16 +477,10 @@ pub fn rate<S: Scalar>(at: &Equations<'_, S>) -> Vec<S> {
 /// Weight of a coordinate's change in a projection: angles count as such, lengths against the size
 /// of the mechanism.
 pub fn weights(scene: &Scene) -> Vec<f64> {
-    weights_at(scene, scene.length)
-}
-
-/// Returns the weights of ways and angles in a metric in which a way of `length` is like a radian
-///   (n_v)
-pub fn weights_at(scene: &Scene, length: f64) -> Vec<f64> {
     let mut w = vec![1.0; scene.layout.n_v];
     for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
         if let (Some(v), false) = (f.v, c.angular) {
-            w[v] = length * length;
+            w[v] = scene.length * scene.length;
         }
     }
     w

@@ -479,3 +479,81 @@ fn moving_a_whole_model_changes_neither_its_assembly_nor_what_is_told() {
         }
     }
 }
+
+/// What nothing couples to a mechanism: free bodies, a bead on a curve, a pendulum with a gap of its own, balls on a plate.
+fn beside(which: usize) -> String {
+    match which {
+        0 => (0..60).fold(String::new(), |text, k| {
+            format!(
+                "{text}PART/{p}, QG={x},{y},-7, MASS=1, CM={m}, IP=1,1,1\nMARKER/{m}, PART={p}\n",
+                p = 200 + k,
+                m = 2000 + k,
+                x = 40 + k,
+                y = 3 * k % 7
+            )
+        }),
+        1 => "MARKER/2009, PART=1, FLOATING\nPART/200, QG=0.82,0.69,-0.19, MASS=1, CM=2000, IP=0.1,0.2,0.3\n\
+              MARKER/2000, PART=200\nMARKER/2001, PART=200, QP=0.2,-0.1,0.3\nMARKER/2002, PART=1\n\
+              MATRIX/201, FULL=RORDER, ROWS=5, COLUMNS=3, VALUES=0,0,0, 0.5,0.2,0.1, 1,0.6,0.1, 1.5,0.7,0.4, 2,1.2,0.5\n\
+              CURVE/201, OPEN, CURVE_POINTS, MATRIX=201\nPTCV/201, CURVE=201, I=2001, RM=2002, JFLOAT=2009\n"
+            .to_owned(),
+        2 => "MARKER/2002, PART=1, QP=-900,20,3\nPART/200, QG=-900.5,20.2,3.1, MASS=1, CM=2000, IP=1,1,1\n\
+              MARKER/2000, PART=200, QP=1,0,0\nMARKER/2001, PART=200\nJOINT/201, REVOLUTE, I=2001, J=2002\n"
+            .to_owned(),
+        _ => "MARKER/2002, PART=1, QP=0,0,-30\nPART/200, QG=0,0,-20, MASS=1, CM=2000, IP=1,1,1\nMARKER/2000, PART=200\n\
+              GRAPHICS/201, BOX, CORNER=2002, X=5, Y=5, Z=1\nGRAPHICS/202, ELLIPSOID, CM=2000, XSCALE=1, YSCALE=1, ZSCALE=1\n\
+              CONTACT/201, IGEOM=202, JGEOM=201, IMPACT, STIFFNESS=1E5, DAMPING=10, EXPONENT=2, DMAX=0.1\n"
+            .to_owned(),
+    }
+}
+
+/// A mechanism that does not fit as it is drawn is assembled where it is alone, to the last bit, whatever else is in the model,
+/// and however much.
+#[test]
+fn what_nothing_couples_to_a_mechanism_changes_no_bit_of_its_assembly() {
+    let mut n_moved = 0;
+    for name in SCENES {
+        for gap in [0.0, 1e-6, 1e-2, 0.1] {
+            let mut model = scene(name);
+            let parts = model.parts.values_mut().filter(|p| !p.ground);
+            for (k, part) in parts.enumerate() {
+                part.qg[k % 3] += gap * (1.0 + k as f64);
+                part.qg[(k + 1) % 3] -= 2.0 * gap;
+            }
+            let columns = measured(&model);
+            let places = |model: &Model| {
+                let options = Options {
+                    columns: columns.clone(),
+                    ..Options::default()
+                };
+                let mut s = begin(model.clone(), "law", options);
+                s.simulate(Analysis::InitialConditions, 0.0, 1, &mut Unwatched)
+                    .ok()?;
+                Some(
+                    columns
+                        .iter()
+                        .map(|c| running::first(&s, c))
+                        .collect::<Vec<f64>>(),
+                )
+            };
+            let Some(alone) = places(&model) else {
+                continue;
+            };
+            n_moved += usize::from(gap > 0.0);
+            for which in 0..4 {
+                let text = model
+                    .to_text()
+                    .replace("\nEND", &format!("\n{}END", beside(which)));
+                let other = Model::from_text(&text).unwrap_or_else(|e| panic!("{e:?}\n{text}"));
+                let found = places(&other).unwrap_or_else(|| panic!("{name} {gap} {which}"));
+                for ((column, a), b) in columns.iter().zip(&alone).zip(&found) {
+                    assert!(
+                        a.to_bits() == b.to_bits(),
+                        "{name} {gap} {which} {column}: {a} {b}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(n_moved > 20, "{n_moved}");
+}

@@ -7,7 +7,7 @@
 use crate::analysis::direction::{Axis, Direction};
 use crate::analysis::look::Look;
 use crate::analysis::quantity::{length, short};
-use crate::analysis::start::mechanisms::{Mechanism, mechanisms};
+use crate::analysis::start::mechanisms::{self, Mechanism, mechanisms};
 use crate::analysis::start::{alignment, branch, nearby};
 use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::arrange::Arrange;
@@ -227,19 +227,6 @@ pub(super) fn merged(mut row: SparseRow) -> SparseRow {
     row
 }
 
-/// Returns the parts of a matrix that can be treated apart; one that hangs together is one part
-/// with all of its columns.
-pub(super) fn parts(rows: &[SparseRow], n: usize) -> Vec<Block> {
-    let parts = connected(rows, n);
-    if parts.iter().filter(|p| !p.columns.is_empty()).count() > 1 {
-        return parts;
-    }
-    vec![Block {
-        rows: (0..rows.len()).collect(),
-        columns: (0..n).collect(),
-    }]
-}
-
 /// Returns a row's residual as a part of its scale, to be compared with [`CLOSED`].
 fn relative(scene: &Scene, r: usize, value: f64) -> f64 {
     (value / scene.row_scale(r)).abs()
@@ -308,7 +295,7 @@ pub(in crate::analysis) fn least_change(
     b: &DVector<f64>,
 ) -> DVector<f64> {
     let mut change = DVector::zeros(w.len());
-    for part in parts(a, w.len()) {
+    for part in connected(a, w.len()) {
         let rows = scaled_part(&part, a, w);
         let n = part.columns.len();
         let rank = Rank::of_rows(rows, n, 1e-9);
@@ -380,22 +367,9 @@ pub(super) fn close_while<E>(
             .fold(0.0, f64::max)
     };
     let mut iterations = 0;
-    if worst(&g) <= ROUNDING {
-        let size = worst(&g);
-        return Ok(Closed {
-            iterations,
-            size,
-            g,
-        });
-    }
     let all = mechanisms(scene, gradient.iter());
     let mut closing: Vec<Closing> = all.iter().map(Closing::new).collect();
-    let mut w = vec![1.0; scene.layout.n_v];
-    for mechanism in &all {
-        for &v in &mechanism.velocities {
-            w[v] = mechanism.unit(v).powi(2);
-        }
-    }
+    let w = mechanisms::weights(&all, scene.layout.n_v);
     while iterations < MAX_ITERATIONS {
         look()?;
         // each mechanism by itself
@@ -468,8 +442,9 @@ impl<'m> Closing<'m> {
 
     /// Begins an iteration at these residuals.
     fn begin(&mut self, scene: &Scene, g: &DVector<f64>) {
-        let rows = self.mechanism.rows.iter();
-        self.is_done |= rows.clone().all(|&r| relative(scene, r, g[r]) <= ROUNDING);
+        let mut rows = self.mechanism.rows.iter();
+        let one = |r: usize| scene.row_scale_at(r, self.mechanism.reach);
+        self.is_done |= rows.all(|&r| (g[r] / one(r)).abs() <= ROUNDING);
         self.size = self.norm(g);
         self.is_nearer = false;
     }
@@ -689,7 +664,7 @@ pub(super) fn rank_of_rows<E>(
     let order = |&r: &usize| (!preferred[r], kind(r), r);
     let longest = w.iter().map(|w| w.sqrt()).fold(0.0, f64::max);
     let (mut independent, mut redundant) = (Vec::new(), Vec::new());
-    for mut part in parts(gradient, w.len()) {
+    for mut part in connected(gradient, w.len()) {
         part.rows.arrange_by_key(order);
         let mut rows = scaled_part(&part, gradient, w);
         for (row, &r) in rows.iter_mut().zip(&part.rows) {

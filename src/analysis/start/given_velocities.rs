@@ -4,7 +4,7 @@
 use super::assemble::numbers;
 use super::initial_conditions::of_joints;
 use super::kinetic::Squares;
-use super::velocities::{components, joint_rates, line_rates, link_of, size_of};
+use super::velocities::{components, joint_rates, line_rates, link_of};
 use crate::model::{ElementKind, InitialQuantity, Model};
 use crate::numeric::connected::{SparseRow, connected};
 use crate::scene::configuration::Configured;
@@ -50,8 +50,10 @@ impl Level {
 impl GivenVelocities {
     /// Collects them at an instant `(t, q, x)`. Trees whose velocities in `v`, which the rows
     /// permit, are those given already need no coefficients: a stored zero stands for them.
+    ///
+    /// `sizes`: of the mechanisms of the links.
     pub fn collect(
-        scene: Configured<'_>,
+        (scene, sizes): (Configured<'_>, &[f64]),
         model: &Model,
         (t, q, x): (f64, &[f64], &[f64]),
         (gradient, v): (&[SparseRow], &DVector<f64>),
@@ -63,7 +65,7 @@ impl GivenVelocities {
         let squares: Vec<Squares> = scene.links.iter().map(Squares::of).collect();
         let evaluate = |v: &[f64]| {
             let at = Equations::new(scene, &numbers(scene, t, q, v, x));
-            part_velocities((&scene, &squares), model, &at)
+            part_velocities((&scene, &squares, sizes), model, &at)
         };
         let (still, targets) = evaluate(&vec![0.0; n]);
         let zero: Vec<f64> = still.iter().map(|found| found.value).collect();
@@ -240,15 +242,15 @@ impl Target {
 /// Evaluates the velocity components of all parts as the dataset would give them, with origin and
 /// value of those that it gives; then joint rates. Ways count in sizes of the mechanism.
 fn part_velocities(
-    (scene, squares): (&Scene, &[Squares]),
+    (scene, squares, sizes): (&Scene, &[Squares], &[f64]),
     model: &Model,
     at: &Equations<'_, f64>,
 ) -> (Vec<Found>, Vec<Target>) {
     let mut values = Vec::new();
     let mut targets = Vec::new();
-    let way = 1.0 / size_of(scene);
+    let way_of = |link: LinkIx| 1.0 / link.map_or(1.0, |l| sizes[l]);
     for (k, (own, state)) in squares.iter().zip(at.links()).enumerate() {
-        for (value, size) in own.at(state, scene.size) {
+        for (value, size) in own.at(state, sizes[k]) {
             targets.push(Target::of_energy(k));
             values.push(Found::of(value, size));
         }
@@ -260,6 +262,7 @@ fn part_velocities(
         let Some([v, w]) = components(scene, data, at) else {
             continue;
         };
+        let way = way_of(part.link);
         let [fast, turning] = [v, w].map(|x| Vec3(x).norm());
         let found = (v
             .map(|x| Found::of(x * way, fast * way + turning))
@@ -276,6 +279,8 @@ fn part_velocities(
         }
     }
     for (c, cam) in scene.cams.iter().enumerate() {
+        let [i, j] = [cam.i, cam.j].map(|m| scene.markers[m].link);
+        let way = way_of(i.or(j));
         for (k, along) in at.cam_speeds(c).into_iter().enumerate() {
             if let Some(given) = cam.velocity[k] {
                 values.push(Found::of(along, along.abs()).times(way));
@@ -285,16 +290,17 @@ fn part_velocities(
             }
         }
     }
-    let unit = |is_angle: bool| if is_angle { 1.0 } else { way };
+    let unit = |is_angle: bool, link: LinkIx| if is_angle { 1.0 } else { way_of(link) };
     for rate in joint_rates(scene, model, at) {
         let joint = &model.joints[&rate.id];
         let link = |m: u32| scene.markers[*scene.marker_of.get(&m)?].link;
-        let (unit, link) = (unit(rate.is_angle), link(joint.i).or_else(|| link(joint.j)));
+        let link = link(joint.i).or_else(|| link(joint.j));
+        let unit = unit(rate.is_angle, link);
         values.push(Found::of(rate.found, rate.size).times(unit));
         targets.push(Target::of_constraint(rate.wanted * unit, link));
     }
     for rate in line_rates(scene, model, at) {
-        let unit = unit(rate.is_angle);
+        let unit = unit(rate.is_angle, rate.link);
         values.push(Found::of(rate.found, rate.size).times(unit));
         targets.push(Target::of_constraint(rate.wanted * unit, rate.link));
     }

@@ -11,8 +11,12 @@ pub(super) struct Mechanism {
     pub velocities: Vec<usize>,
     pub parts: Vec<usize>,
     pub rows: Vec<usize>,
+    /// its rows, and those of other equations behind all rows
+    pub equations: Vec<usize>,
     /// its size as it is drawn
     pub size: f64,
+    /// how far it reaches from the origin, at least its size: against it lengths are rounded
+    pub reach: f64,
     /// what counts as one of each velocity
     units: Vec<f64>,
 }
@@ -44,18 +48,20 @@ pub(super) fn mechanisms<'g>(
     });
     let mut ties: Vec<SparseRow> = carried.collect();
     let of_row = |row: &SparseRow| row.iter().map(|&(v, _)| one(link_of[v])).collect();
+    let n_links = ties.len();
     ties.extend(gradients.map(of_row));
     // a slope that is zero here need not stay so
-    ties.extend(scene.constraints.iter().map(|element| {
+    for element in &scene.constraints {
         let pair = element.markers.into_iter().flat_map(|(i, j)| [i, j]);
         let markers = pair.chain(element.acts_on.iter().copied());
-        markers
-            .filter_map(|m| scene.markers[m].link)
-            .map(one)
-            .collect()
-    }));
-    let n_links = scene.links.len();
-    let rows = n_links..n_links + scene.rows.len();
+        let links = markers.filter_map(|m| scene.markers[m].link);
+        let links: SparseRow = links.map(one).collect();
+        for r in element.rows.clone() {
+            ties[n_links + r].extend_from_slice(&links);
+        }
+        ties.push(links);
+    }
+    let n_equations = ties.len() - n_links - scene.constraints.len();
     let mut all: Vec<Mechanism> = Vec::new();
     let mut own = vec![None; n_links];
     for block in connected(&ties, n_links) {
@@ -63,9 +69,12 @@ pub(super) fn mechanisms<'g>(
             continue;
         }
         block.columns.iter().for_each(|&l| own[l] = Some(all.len()));
-        let of_block = block.rows.iter().filter(|r| rows.contains(r));
+        let equations = block.rows.iter().filter_map(|r| r.checked_sub(n_links));
+        let equations: Vec<usize> = equations.filter(|&k| k < n_equations).collect();
+        let rows = equations.iter().copied().filter(|&r| r < scene.rows.len());
         all.push(Mechanism {
-            rows: of_block.map(|r| r - n_links).collect(),
+            rows: rows.collect(),
+            equations,
             links: block.columns,
             ..Mechanism::default()
         });
@@ -89,8 +98,35 @@ pub(super) fn mechanisms<'g>(
     for (mechanism, markers) in all.iter_mut().zip(markers) {
         let size = scene.size_of(&mechanism.parts, &markers);
         mechanism.size = size;
+        mechanism.reach = (markers.iter().map(|&m| scene.drawn(m).position.norm()))
+            .filter(|x| x.is_finite())
+            .fold(size, f64::max);
         let unit = |&v: &usize| if turns[v] { 1.0 } else { size };
         mechanism.units = mechanism.velocities.iter().map(unit).collect();
     }
     all
+}
+
+/// Returns the metric of the velocities in which the size of a mechanism is like a radian: squares of
+/// what counts as one   (n_v)
+pub(super) fn weights(all: &[Mechanism], n_v: usize) -> Vec<f64> {
+    let mut w = vec![1.0; n_v];
+    for mechanism in all {
+        for (&v, unit) in mechanism.velocities.iter().zip(&mechanism.units) {
+            w[v] = unit * unit;
+        }
+    }
+    w
+}
+
+/// Returns the size of the mechanism of each link   (n_links)
+pub(super) fn sizes_by_links(all: &[Mechanism], n_links: usize) -> Vec<f64> {
+    let mut sizes = vec![1.0; n_links];
+    for mechanism in all {
+        mechanism
+            .links
+            .iter()
+            .for_each(|&l| sizes[l] = mechanism.size);
+    }
+    sizes
 }

@@ -8,7 +8,7 @@
 use crate::analysis::look::Look;
 use crate::analysis::start::assemble::{self, CLOSED, Redundant};
 use crate::diagnostic::Diagnostic;
-use crate::numeric::connected::SparseRow;
+use crate::numeric::connected::{SparseRow, connected};
 use crate::numeric::rank::Rank;
 use crate::scene::Scene;
 use crate::scene::configuration::{Configuration, Configured};
@@ -184,7 +184,7 @@ impl<'s> Surroundings<'s> {
 fn free_directions(gradient: &[SparseRow], w: &[f64]) -> Vec<SparseRow> {
     let mut free = Vec::new();
     let mut held = vec![false; w.len()];
-    for part in assemble::parts(gradient, w.len()) {
+    for part in connected(gradient, w.len()) {
         let rows = assemble::scaled_part(&part, gradient, w);
         let n = part.columns.len();
         let rank = Rank::of_rows(rows, n, assemble::DEPENDENT);

@@ -2,11 +2,10 @@
 //! those of least kinetic energy: those of a mechanism at rest that is struck where velocities are
 //! given.
 
-use super::assemble::{
-    DEPENDENT, EMPTY, directions, least_change, numbers, parts, rank_while, rows_at,
-};
+use super::assemble::{DEPENDENT, EMPTY, directions, least_change, numbers, rank_while, rows_at};
 use super::given_velocities::{Given, GivenVelocities, Level};
 use super::initial_conditions::of_joints;
+use super::mechanisms::{self, mechanisms};
 use super::tangents::Tangents;
 use crate::analysis::direction::Direction;
 use crate::analysis::look::Look;
@@ -18,7 +17,7 @@ use crate::numeric::connected::{Block, SparseRow};
 use crate::scalar::Jet;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
-use crate::scene::programs::{weights, weights_at};
+use crate::scene::programs::weights;
 use crate::scene::{LinkIx, Scene};
 use crate::space::{Frame, MarkerState, Mat3, Vec3};
 use nalgebra::{DMatrix, DVector};
@@ -111,7 +110,9 @@ pub(in crate::analysis) fn velocities_while(
     look()?;
     // v = v₀ + N z, with N the null space of the rows
     let firm = without_empty(scene, &gradient);
-    let mut v = least_change(&firm, &weights_at(&scene, size_of(&scene)), &(-&drift));
+    let own = mechanisms(&scene, gradient.iter());
+    let w = mechanisms::weights(&own, n);
+    let mut v = least_change(&firm, &w, &(-&drift));
     look()?;
     let entries = gradient.iter().flatten();
     let largest = entries.fold(0.0, |m: f64, e| m.max(e.1.abs()));
@@ -123,7 +124,8 @@ pub(in crate::analysis) fn velocities_while(
             return Err(vec![prescribed_too_much((scene, model), &still, r, left)]);
         }
     }
-    let given = GivenVelocities::collect(scene, model, (t, q, x), (&gradient, &v));
+    let sizes = mechanisms::sizes_by_links(&own, scene.links.len());
+    let given = GivenVelocities::collect((scene, &sizes), model, (t, q, x), (&gradient, &v));
     if given.are_met {
         return Ok(Beginning::fixed(v.iter().copied().collect()));
     }
@@ -132,7 +134,11 @@ pub(in crate::analysis) fn velocities_while(
     let all = levels.iter().flat_map(|level| &level.rows);
     let all: Vec<SparseRow> = gradient.iter().chain(all).cloned().collect();
     let (mut changed, mut is_weighed) = (false, false);
-    for part in parts(&all, n) {
+    for mechanism in mechanisms(&scene, all.iter()) {
+        let part = Block {
+            rows: mechanism.equations,
+            columns: mechanism.velocities,
+        };
         look()?;
         let own = Part::new(&part, &firm, levels);
         let here = DVector::from_iterator(part.columns.len(), part.columns.iter().map(|&k| v[k]));
@@ -142,8 +148,10 @@ pub(in crate::analysis) fn velocities_while(
         changed = true;
         let (nearest, left) = own.nearest(here, look)?;
         is_weighed |= left.ncols() > 0;
+        // without rounding dust where the dataset says zero
+        let dust = 1e-14 * nearest.amax();
         for (&k, x) in part.columns.iter().zip(nearest.iter()) {
-            v[k] = *x;
+            v[k] = if x.abs() < dust { 0.0 } else { *x };
         }
         // where branches meet, along one of them
         let dependences = own.dependences(&part, scene, look)?;
@@ -171,10 +179,7 @@ pub(in crate::analysis) fn velocities_while(
     if !changed {
         return Ok(Beginning::fixed(v.iter().copied().collect()));
     }
-    // without rounding dust where the dataset says zero
-    let size = v.amax();
-    let v = (v.iter()).map(|x| if x.abs() < 1e-14 * size { 0.0 } else { *x });
-    let v = v.collect();
+    let v = v.iter().copied().collect();
     Ok(Beginning { v, is_weighed })
 }
 
