@@ -271,6 +271,8 @@ impl Session {
         } else {
             Vec::new()
         };
+        let drawn = (start.t, &start.q[..], &start.x[..]);
+        let driven = misalignment::driven(&start.scene, &start.configuration, drawn);
         // the rows, and what they did not let be met
         let (mut assembly, contacts) = (start.assemble(&self.model, &conditions, look))
             .map_err(|said| blamed(&self.model, said))?;
@@ -283,7 +285,8 @@ impl Session {
         let still = vec![0.0; here.layout.n_v];
         let numbers = assemble::numbers(here, t, q, &still, x);
         let turned = misalignment::turned(here, &self.model, &numbers, moves);
-        warnings.extend(turned.into_iter().map(Warning::from));
+        let moved = driven.into_iter().chain(turned);
+        warnings.extend(moved.map(Warning::from));
         Ok(assembly)
     }
 

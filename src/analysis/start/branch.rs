@@ -99,7 +99,7 @@ fn frame(at: &Equations<'_, f64>, m: usize) -> Frame<f64> {
 }
 
 /// Returns the short way from one angle to another.
-fn short_way(by: f64) -> f64 {
+pub(super) fn short_way(by: f64) -> f64 {
     (by + PI).rem_euclid(TAU) - PI
 }
 

@@ -1,5 +1,6 @@
 //! The first configuration: that of the dataset, moved to initial conditions and onto the rows.
 //!
+//! Where motions begin elsewhere than where their joints are drawn, the mechanism is driven there.
 //! Parts are placed near where they are drawn, then the rows are closed. Where that fails, or ends
 //! at an opposite of what orientation rows ask for, the turns that they ask for are made first
 //! (`branch.rs`), and the rest again from there. The first outcome stands where none of these is
@@ -9,6 +10,7 @@ use crate::analysis::look::Look;
 use crate::analysis::start::alignment;
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::start::branch;
+use crate::analysis::start::driven_start;
 use crate::analysis::start::initial_conditions::{self, InitialCondition, Wanted};
 use crate::analysis::start::nearest::{Origin, nearest};
 use crate::diagnostic::Diagnostic;
@@ -69,11 +71,25 @@ impl<'a> Dataset<'a> {
         let (scene, t, x) = (self.scene, self.t, self.x);
         branch::refer(scene, configuration, t, q, x, true);
         let drawn = (configuration.clone(), q.to_vec());
-        let first = self.near(configuration, q, true, look);
-        look()?;
         let right = |configuration: &Configuration, q: &[f64]| {
             !branch::is_opposite(scene, configuration, &drawn.0, t, q, x)
         };
+        let (mut driven, mut there) = drawn.clone();
+        let asked = (self.model, &self.conditions[..]);
+        let is_driven =
+            driven_start::drive((scene, &mut driven), asked, t, &mut there, x, &mut *look);
+        look()?;
+        if is_driven {
+            let outcome = self.near(&mut driven, &mut there, false, look);
+            look()?;
+            if outcome.is_ok() && right(&driven, &there) {
+                *configuration = driven;
+                q.copy_from_slice(&there);
+                return outcome;
+            }
+        }
+        let first = self.near(configuration, q, true, look);
+        look()?;
         if first.is_ok() && right(configuration, q) {
             return first;
         }

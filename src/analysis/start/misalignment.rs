@@ -2,7 +2,7 @@
 //! parts had to be turned round.
 
 use crate::analysis::direction::Axis;
-use crate::analysis::start::{branch, initial_conditions};
+use crate::analysis::start::{branch, driven_start, initial_conditions};
 use crate::analysis::warning::{AssemblyWarning, ConditionWarning};
 use crate::arrange::Arrange;
 use crate::model::check::alignment::{self, Needed};
@@ -11,7 +11,7 @@ use crate::model::{ElementId, ElementKind, Model};
 use crate::physics::joint::Tie;
 use crate::physics::row::Law;
 use crate::scene::Scene;
-use crate::scene::configuration::Configured;
+use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::Equations;
 use crate::space::{Mat3, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -193,6 +193,27 @@ pub fn turned(
         .into_iter()
         .chain(opposites(scene, model, &at))
         .collect()
+}
+
+/// Returns motions that begin elsewhere than where their joints are drawn, by more than a degree or
+/// as much of the size of the mechanism.
+pub(in crate::analysis) fn driven(
+    scene: &Scene,
+    configuration: &Configuration,
+    drawn: (f64, &[f64], &[f64]),
+) -> Vec<AssemblyWarning> {
+    let ways = driven_start::ways(scene, configuration, drawn).into_iter();
+    let told = ways.filter_map(|way| {
+        let is_angle = scene.drives_an_angle(way.motion);
+        let one = if is_angle { 1.0 } else { scene.size };
+        (way.by.abs() > TURNED * one).then(|| AssemblyWarning::DrivenStart {
+            element: ElementKind::Motion.id(scene.motions[way.motion].id),
+            by: way.by,
+            is_angle,
+            unit: scene.length_unit.clone(),
+        })
+    });
+    told.collect()
 }
 
 /// Returns ties whose axes point against each other, and motions of angles that hold at an

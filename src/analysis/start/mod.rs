@@ -6,6 +6,7 @@ pub mod assemble;
 pub mod branch;
 pub(super) mod coincident;
 pub mod dataset;
+pub(super) mod driven_start;
 pub(super) mod embedded;
 mod given_velocities;
 pub(super) mod initial_conditions;

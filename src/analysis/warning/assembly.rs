@@ -108,6 +108,17 @@ pub enum AssemblyWarning {
         /// the sum, which is held
         sum: f64,
     },
+    /// a motion begins elsewhere than where its joint is drawn
+    DrivenStart {
+        /// the motion
+        element: ElementId,
+        /// how far   [rad, length]
+        by: f64,
+        /// it drives an angle
+        is_angle: bool,
+        /// unit of length
+        unit: String,
+    },
     /// loads read a reaction that redundant equations leave open
     OpenReaction {
         /// the constraint
@@ -149,6 +160,7 @@ impl AssemblyWarning {
             | AssemblyWarning::Embedded { .. }
             | AssemblyWarning::LeftOut { .. }
             | AssemblyWarning::HeldSum { .. }
+            | AssemblyWarning::DrivenStart { .. }
             | AssemblyWarning::OpenReaction { .. } => None,
         }
     }
@@ -167,6 +179,7 @@ impl AssemblyWarning {
             AssemblyWarning::LeftOut { .. } => "redundant",
             AssemblyWarning::Moved { .. } | AssemblyWarning::Struck { .. } => "leap",
             AssemblyWarning::HeldSum { .. } => "held_sum",
+            AssemblyWarning::DrivenStart { .. } => "driven_start",
             AssemblyWarning::OpenReaction { .. } => OPEN_REACTION,
         }
     }
@@ -187,6 +200,7 @@ impl AssemblyWarning {
             | AssemblyWarning::Moved { element, .. }
             | AssemblyWarning::Struck { element, .. }
             | AssemblyWarning::HeldSum { element, .. }
+            | AssemblyWarning::DrivenStart { element, .. }
             | AssemblyWarning::OpenReaction { element } => element,
         };
         element.into()
@@ -254,6 +268,12 @@ impl AssemblyWarning {
             AssemblyWarning::HeldSum { sum, .. } => format!(
                 ": its displacements sum up to {sum:.6e} where they are assembled; \
                  that sum is held, not zero"
+            ),
+            AssemblyWarning::DrivenStart {
+                by, is_angle, unit, ..
+            } => format!(
+                " begins {} from where its joint is drawn; assembly moves the parts there",
+                amount(by.abs(), !is_angle, unit)
             ),
             AssemblyWarning::OpenReaction { .. } => {
                 ": redundant equations leave its reaction open, and a force or friction reads it: \

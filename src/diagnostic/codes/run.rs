@@ -181,6 +181,16 @@ The sum that the assembled position shows is held from there on. Initial conditi
     MARKER/22, PART=2, REULER=-90D,0D,0D  turn the marker until the sum begins at zero",
     },
     Code {
+        name: "driven_start",
+        summary: "a motion begins elsewhere than where its joint is drawn",
+        explanation: "\
+Before a run the mechanism is driven from where it is drawn to where the motion begins, as by a motor, so that it stays on its
+branch; parts stand elsewhere than in the drawing. Where that is not meant, let the function begin at the angle or the length that is
+drawn, or draw the parts where the motion has them.
+
+    MOTION/1, JOINT=1, ROTATION, FUNCTION=90D+TIME      where the crank is drawn at 90 deg",
+    },
+    Code {
         name: "open_reaction",
         summary: "a force or friction reads a reaction that redundant equations leave open",
         explanation: "\
