@@ -411,3 +411,47 @@ fn a_session_begins_anew_with_the_velocities_of_its_masses() {
         near(&[first(&session, "WZ(30)")], &[struck(m)]);
     }
 }
+
+/// A slider-crank drawn at any angle, with a motion that begins at another: the mechanism is driven there along its branch,
+/// and the motion is named.
+#[test]
+fn a_motion_that_begins_elsewhere_drives_the_mechanism_along_its_branch() {
+    for side in [1.0_f64, -1.0] {
+        for k in -8..=8 {
+            let drawn = 0.35 * f64::from(k);
+            let (x, y) = (drawn.cos(), drawn.sin());
+            let rod = -(0.5 * y).asin();
+            let rod = if side > 0.0 {
+                rod
+            } else {
+                std::f64::consts::PI - rod
+            };
+            let slider = x + 2.0 * rod.cos();
+            for begins in [0.0_f64, 0.9, -2.5] {
+                let text = format!(
+                    "MARKER/14, PART=1, REULER=90D,90D,0\nPART/2, MASS=1, CM=21, IP=1,1,1, REULER={drawn:?},0,0\n\
+                     MARKER/21, PART=2\nMARKER/22, PART=2, QP=1,0,0\n\
+                     PART/3, MASS=1, CM=31, IP=1,1,1, QG={x:?},{y:?},0, REULER={rod:?},0,0\n\
+                     MARKER/31, PART=3\nMARKER/32, PART=3, QP=2,0,0\n\
+                     PART/4, MASS=1, CM=40, IP=1,1,1, QG={slider:?},0,0\nMARKER/40, PART=4\n\
+                     MARKER/41, PART=4, REULER=90D,90D,0\nJOINT/1, REVOLUTE, I=21, J=1\nJOINT/2, REVOLUTE, I=31, J=22\n\
+                     JOINT/3, REVOLUTE, I=32, J=40\nJOINT/4, TRANSLATIONAL, I=41, J=14\n\
+                     MOTION/1, JOINT=1, ROTATION, FUNCTION={begins:?}+TIME\n"
+                );
+                let expected = begins.cos() + side * (4.0 - begins.sin().powi(2)).sqrt();
+                for analysis in [Analysis::Kinematic, Analysis::Dynamic] {
+                    let (found, said) = start(&text, &["DX(40,1)"], analysis);
+                    assert!(
+                        (found[0] - expected).abs() < 1e-9,
+                        "{drawn} {begins}: {found:?} {expected}"
+                    );
+                    let named = said.iter().any(|s| s.starts_with("MOTION/1 begins"));
+                    let by = (begins - drawn + 3.0 * std::f64::consts::PI)
+                        .rem_euclid(std::f64::consts::TAU);
+                    let far = (by - std::f64::consts::PI).abs() > 0.0175;
+                    assert_eq!(named, far, "{drawn} {begins}: {said:?}");
+                }
+            }
+        }
+    }
+}

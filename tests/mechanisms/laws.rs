@@ -258,8 +258,21 @@ fn where_ground_is_does_not_matter_to_parts_that_do_not_fit() {
 
 /// The same in millimetres, with forces in newtons.
 fn in_millimetres(model: &Model) -> Model {
+    let mut other = in_lengths(model, 1000.0);
+    other.units = Some(Units {
+        force: "NEWTON".into(),
+        mass: "KILOGRAM".into(),
+        length: "MILLIMETER".into(),
+        time: "SECOND".into(),
+        ucf: 1000.0,
+    });
+    other
+}
+
+/// The same with lengths that are larger by a factor, and forces in units that go with them.
+fn in_lengths(model: &Model, factor: f64) -> Model {
     let mut other = model.clone();
-    let long = |x: &mut [f64; 3]| x.iter_mut().for_each(|x| *x *= 1000.0);
+    let long = |x: &mut [f64; 3]| x.iter_mut().for_each(|x| *x *= factor);
     let longer = |o: &mut Orientation| {
         if let Orientation::Points { z, x, .. } = o {
             z.iter_mut().for_each(long);
@@ -269,21 +282,38 @@ fn in_millimetres(model: &Model) -> Model {
     for part in other.parts.values_mut() {
         long(&mut part.qg);
         longer(&mut part.orientation);
-        part.ip.iter_mut().for_each(|i| *i *= 1e6);
+        part.ip.iter_mut().for_each(|i| *i *= factor * factor);
     }
     for marker in other.markers.values_mut() {
         long(&mut marker.qp);
         longer(&mut marker.orientation);
     }
     long(&mut other.gravity);
-    other.units = Some(Units {
-        force: "NEWTON".into(),
-        mass: "KILOGRAM".into(),
-        length: "MILLIMETER".into(),
-        time: "SECOND".into(),
-        ucf: 1000.0,
-    });
+    other.units = None;
     other
+}
+
+/// No number of ours is a length: mechanisms of any size, drawn with gaps or without, go the same ways.
+#[test]
+fn lengths_of_any_size_do_not_matter() {
+    for name in SCENES {
+        for gap in [0.0, 1e-2] {
+            let mut model = scene(name);
+            let parts = model.parts.values_mut().filter(|p| !p.ground);
+            for (k, part) in parts.enumerate() {
+                part.qg[k % 3] += gap * (1.0 + k as f64);
+            }
+            model.units = None;
+            let columns = measured(&model);
+            let a = solved(&model, &columns);
+            for factor in [1e-9, 1e-6, 1e-3, 1e6, 1e9] {
+                let b = solved(&in_lengths(&model, factor), &columns);
+                agree(name, &format!("{factor:e}"), &columns, &a, &b, |c| {
+                    if c.starts_with('D') { factor } else { 1.0 }
+                });
+            }
+        }
+    }
 }
 
 #[test]

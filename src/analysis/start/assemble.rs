@@ -30,7 +30,7 @@ use std::convert::Infallible;
 /// Part of a row orthogonal to earlier rows, relative to its length, below which it depends on
 /// them.
 pub const DEPENDENT: f64 = 1e-8;
-/// Length of a row, compared with where it moves something, below which it moves nothing.
+/// Strength of a row below which it moves nothing: see [`strengths`].
 pub(super) const EMPTY: f64 = 1e-9;
 /// Residual of a row that holds, at most, as a part of its scale.
 pub const CLOSED: f64 = 1e-10;
@@ -232,13 +232,28 @@ fn relative(scene: &Scene, r: usize, value: f64) -> f64 {
     (value / scene.row_scale(r)).abs()
 }
 
+/// Returns how much rows change with the velocities, in what counts as one of each, lengths in sizes
+/// of the mechanism   (n_rows)
+pub(super) fn strengths(scene: &Scene, gradient: &[SparseRow]) -> Vec<f64> {
+    let mut units = vec![1.0; scene.layout.n_v];
+    for freedom in scene.freedoms.iter().filter(|f| !f.turn) {
+        if let Some(v) = freedom.v {
+            units[v] = scene.size;
+        }
+    }
+    let strength = |(r, row): (usize, &SparseRow)| {
+        let squares = row.iter().map(|&(v, x)| (x * units[v]).powi(2));
+        squares.sum::<f64>().sqrt() / scene.row_scale_at(r, scene.size)
+    };
+    gradient.iter().enumerate().map(strength).collect()
+}
+
 /// Clears the rows that hold and move nothing, as a GCON between markers of one body: the direction
 /// of such a row is rounding, and no step along it closes what rounding leaves.
 pub(super) fn clear_idle(scene: &Scene, g: &[f64], gradient: &mut [SparseRow]) {
+    let strengths = strengths(scene, gradient);
     for (r, row) in gradient.iter_mut().enumerate() {
-        let size = row.iter().map(|e| e.1 * e.1).sum::<f64>().sqrt();
-        let moves = size > EMPTY * scene.row_scale(r).min(1.0);
-        if !moves && relative(scene, r, g[r]) <= CLOSED {
+        if strengths[r] <= EMPTY && relative(scene, r, g[r]) <= CLOSED {
             row.clear();
         }
     }
@@ -662,15 +677,14 @@ pub(super) fn rank_of_rows<E>(
         RowKind::Displacements(_) | RowKind::Formula { .. } | RowKind::Cam { .. } => 2,
     };
     let order = |&r: &usize| (!preferred[r], kind(r), r);
-    let longest = w.iter().map(|w| w.sqrt()).fold(0.0, f64::max);
+    let strengths = strengths(scene, gradient);
     let (mut independent, mut redundant) = (Vec::new(), Vec::new());
     for mut part in connected(gradient, w.len()) {
         part.rows.arrange_by_key(order);
         let mut rows = scaled_part(&part, gradient, w);
         for (row, &r) in rows.iter_mut().zip(&part.rows) {
             // a row that moves nothing there says nothing about what its direction is
-            let size = row.iter().map(|x| x * x).sum::<f64>().sqrt();
-            if size <= EMPTY * scene.row_scale(r).min(longest) {
+            if strengths[r] <= EMPTY {
                 row.fill(0.0);
             }
         }

@@ -2,7 +2,9 @@
 //! those of least kinetic energy: those of a mechanism at rest that is struck where velocities are
 //! given.
 
-use super::assemble::{DEPENDENT, EMPTY, directions, least_change, numbers, rank_while, rows_at};
+use super::assemble::{
+    DEPENDENT, EMPTY, directions, least_change, numbers, rank_while, rows_at, strengths,
+};
 use super::given_velocities::{Given, GivenVelocities, Level};
 use super::initial_conditions::of_joints;
 use super::mechanisms::{self, mechanisms};
@@ -140,8 +142,8 @@ pub(in crate::analysis) fn velocities_while(
             columns: mechanism.velocities,
         };
         look()?;
-        let own = Part::new(&part, &firm, levels);
-        let here = DVector::from_iterator(part.columns.len(), part.columns.iter().map(|&k| v[k]));
+        let own = Part::new(&part, &firm, levels, &w);
+        let here = own.of(&v);
         if own.holds(&here) {
             continue;
         }
@@ -150,8 +152,8 @@ pub(in crate::analysis) fn velocities_while(
         is_weighed |= left.ncols() > 0;
         // without rounding dust where the dataset says zero
         let dust = 1e-14 * nearest.amax();
-        for (&k, x) in part.columns.iter().zip(nearest.iter()) {
-            v[k] = if x.abs() < dust { 0.0 } else { *x };
+        for ((&k, x), one) in part.columns.iter().zip(nearest.iter()).zip(&own.units) {
+            v[k] = if x.abs() < dust { 0.0 } else { x * one };
         }
         // where branches meet, along one of them
         let dependences = own.dependences(&part, scene, look)?;
@@ -162,17 +164,12 @@ pub(in crate::analysis) fn velocities_while(
         let tangents = Tangents::new(scene, (t, q, x), dependences);
         let whole = |s: nalgebra::DVectorView<'_, f64>| {
             let mut all = DVector::zeros(n);
-            part.columns
-                .iter()
-                .zip(s.iter())
-                .for_each(|(&k, x)| all[k] = *x);
+            let entries = part.columns.iter().zip(s.iter()).zip(&own.units);
+            entries.for_each(|((&k, x), one)| all[k] = x * one);
             all
         };
         let free: Vec<DVector<f64>> = left.column_iter().map(whole).collect();
-        let own_columns = |v: &DVector<f64>| {
-            DVector::from_iterator(part.columns.len(), part.columns.iter().map(|&k| v[k]))
-        };
-        if let Some(along) = tangents.nearest(&v, &free, |v| own.off(&own_columns(v))) {
+        if let Some(along) = tangents.nearest(&v, &free, |v| own.off(&own.of(v))) {
             v = along;
         }
     }
@@ -325,8 +322,13 @@ fn along(row: &[(usize, f64)], v: &DVector<f64>) -> f64 {
     row.iter().fold(0.0, |sum, &(k, x)| sum + x * v[k])
 }
 
-/// The rows and the given velocities of parts that share no velocity with any others.
+/// The rows and the given velocities of parts that share no velocity with any others, whose
+/// velocities count in what is one of each.
 struct Part {
+    /// places of its velocities in v   (n)
+    columns: Vec<usize>,
+    /// what counts as one of each   (n)
+    units: Vec<f64>,
     /// the rows   (m × n)
     g: DMatrix<f64>,
     /// what is given, the first first: matrix, right side
@@ -335,11 +337,13 @@ struct Part {
 
 impl Part {
     /// Collects them: rows of `part` count through the rows of G, then through those of each level.
-    fn new(part: &Block, gradient: &[SparseRow], levels: [&Given; Level::ALL]) -> Self {
+    /// `w`: squares of what counts as one of each velocity.
+    fn new(part: &Block, gradient: &[SparseRow], levels: [&Given; Level::ALL], w: &[f64]) -> Self {
         let n = part.columns.len();
+        let units: Vec<f64> = part.columns.iter().map(|&v| w[v].sqrt()).collect();
         let dense = |rows: &[&SparseRow]| {
             let rows: Vec<Vec<f64>> = rows.iter().map(|row| part.dense(row)).collect();
-            DMatrix::from_fn(rows.len(), n, |i, j| rows[i][j])
+            DMatrix::from_fn(rows.len(), n, |i, j| rows[i][j] * units[j])
         };
         let mut from = gradient.len();
         let of_rows: Vec<&SparseRow> = (part.rows.iter())
@@ -356,7 +360,19 @@ impl Part {
             let right = own.iter().map(|&k| level.right[k]);
             (dense(&rows), DVector::from_iterator(own.len(), right))
         });
-        Self { g, levels }
+        let columns = part.columns.clone();
+        Self {
+            columns,
+            units,
+            g,
+            levels,
+        }
+    }
+
+    /// Returns its velocities among all.
+    fn of(&self, v: &DVector<f64>) -> DVector<f64> {
+        let own = self.columns.iter().zip(&self.units);
+        DVector::from_iterator(self.units.len(), own.map(|(&k, one)| v[k] / one))
     }
 
     /// Returns whether velocities are those that are given.
@@ -429,9 +445,9 @@ impl Part {
 /// Returns the rows of a matrix, zeros for those that move nothing: the direction of such a row is
 /// rounding.
 fn without_empty(scene: Configured<'_>, gradient: &[SparseRow]) -> Vec<SparseRow> {
+    let strengths = strengths(&scene, gradient);
     let filled = |(r, row): (usize, &SparseRow)| {
-        let size = row.iter().map(|e| e.1 * e.1).sum::<f64>().sqrt();
-        let empty = size <= DEPENDENT * scene.row_scale(r).min(1.0);
+        let empty = strengths[r] <= DEPENDENT;
         let entry = |&(v, x): &(usize, f64)| (v, if empty { 0.0 } else { x });
         row.iter().map(entry).collect()
     };
