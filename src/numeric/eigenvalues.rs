@@ -100,7 +100,8 @@ impl Matrix<'_> {
     }
 
     /// Returns the first row of the window that ends before the row `high`: the entry beside it on
-    /// the subdiagonal is rounding of the two eigenvalues that it parts, or no more than `rounding`.
+    /// the subdiagonal is rounding of the two eigenvalues that it parts, or no more than
+    /// `rounding`.
     fn window_of(&self, high: usize, rounding: f64) -> usize {
         let is_apart = |&low: &usize| {
             low == 0 || {

@@ -30,6 +30,7 @@ use crate::analysis::look::Look;
 use crate::analysis::quantity::amount;
 use crate::analysis::start::assemble::{self, CLOSED, DEPENDENT, Redundant};
 use crate::analysis::start::nearby::Surroundings;
+use crate::analysis::start::nearest::{LONGEST_STEP, MAX_ITERATIONS};
 use crate::analysis::warning::AssemblyWarning;
 use crate::arrange::Arrange;
 use crate::diagnostic::{Cause, Diagnostic};
@@ -56,12 +57,8 @@ const AS_DRAWN: f64 = 1e-12;
 const ROUNDING: f64 = 1e-13;
 /// Largest deviation (2) of a row that follows exactly: rounding, as rows are closed to 1e-13.
 const EXACT: f64 = 1e-11;
-/// Iterations towards the kept rows, at most.
-const MAX_ITERATIONS: usize = 60;
 /// Change of a coordinate at which these have arrived, rad or parts of a loop.
 const ARRIVED: f64 = 1e-10;
-/// Longest change of a coordinate in one iteration.
-const LONGEST_STEP: f64 = 0.5;
 /// Way by which motions are moved to look nearby, in rad or parts of the length of the scene.
 const DRIVEN: f64 = 0.05;
 /// Places nearby at which rows are measured, and the steps that lead there, the first first.

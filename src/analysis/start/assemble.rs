@@ -8,6 +8,7 @@ use crate::analysis::direction::{Axis, Direction};
 use crate::analysis::look::Look;
 use crate::analysis::quantity::{length, short};
 use crate::analysis::start::mechanisms::{self, Mechanism, mechanisms};
+use crate::analysis::start::nearest::{LONGEST_STEP, MAX_ITERATIONS};
 use crate::analysis::start::{alignment, branch, nearby};
 use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::arrange::Arrange;
@@ -37,10 +38,6 @@ pub const CLOSED: f64 = 1e-10;
 
 /// Residual of a row, as a part of its scale, that is rounding.
 const ROUNDING: f64 = 1e-13;
-/// Iterations that close rows, at most.
-const MAX_ITERATIONS: usize = 100;
-/// Longest change of a coordinate in one of them, rad or parts of the mechanism's size.
-const LONGEST_STEP: f64 = 0.5;
 /// Smallest part of a step that is tried.
 const SHORTEST_PART: f64 = 1e-6;
 
@@ -232,8 +229,8 @@ fn relative(scene: &Scene, r: usize, value: f64) -> f64 {
     (value / scene.row_scale(r)).abs()
 }
 
-/// Returns how much rows change with the velocities, in what counts as one of each, lengths in sizes
-/// of the mechanism   (n_rows)
+/// Returns how much rows change with the velocities, in what counts as one of each, lengths in
+/// sizes of the mechanism   (n_rows)
 pub(super) fn strengths(scene: &Scene, gradient: &[SparseRow]) -> Vec<f64> {
     let mut units = vec![1.0; scene.layout.n_v];
     for freedom in scene.freedoms.iter().filter(|f| !f.turn) {
@@ -431,7 +428,7 @@ pub(super) fn close_while<E>(
     })
 }
 
-/// How far the closing of a mechanism has come.
+/// The state of closing a mechanism.
 struct Closing<'m> {
     mechanism: &'m Mechanism,
     /// residuals before the step

@@ -14,8 +14,8 @@
 //!
 //! Motions of several body angles between the same markers drive a frame or an axis, as (1) or (2).
 //! [`turn`] makes these turns together, with all other rows as they are, and moves parts as little
-//! as may be; from there the rows themselves are closed. It is asked for only where the rows alone have failed or
-//! have led to an opposite.
+//! as may be; from there the rows themselves are closed. It is asked for only where the rows alone
+//! have failed or have led to an opposite.
 
 use crate::analysis::start::assemble::numbers;
 use crate::analysis::start::initial_conditions::Wanted;

@@ -1,5 +1,5 @@
-//! Motions that begin elsewhere than where their joints are drawn: the mechanism is driven there, as
-//! a motor would, so that it stays on the branch on which it is drawn.
+//! Motions that begin elsewhere than where their joints are drawn: the mechanism is driven there,
+//! as a motor would, so that it stays on the branch on which it is drawn.
 //!
 //! ```text
 //! δ = f(t) − δ_drawn, angles the short way        stages at f − δ, …, f − δ (n − k)/n, …, f

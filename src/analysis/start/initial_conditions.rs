@@ -9,18 +9,18 @@
 //! PTCV: I at the point of the curve next to DISP        CVCV: the curves touch next to IDISP and JDISP
 //! ```
 //!
-//! Angles of a marker that are all given, or that have no slope where they are drawn, as ψ and φ have
-//! none at θ = 0, are one condition: the whole orientation, with the angles as drawn in place of
-//! those that are not given. So are the three angles of a ball.
+//! Angles of a marker that are all given, or that have no slope where they are drawn, as ψ and φ
+//! have none at θ = 0, are one condition: the whole orientation, with the angles as drawn in place
+//! of those that are not given. So are the three angles of a ball.
 //!
 //! ```text
 //! the turn that is left from x_I, y_I, z_I to where they are wanted is zero
 //! ```
 //!
-//! The position nearest to the drawing meets them as far as the rows let it (`nearest.rs`): rows win
-//! where they contradict conditions, with a warning. Only dynamic simulations
-//! have conditions of joints and parts: kinematics and statics find their own configuration. Those
-//! of contacts count always: they choose among the ways in which the parts can be put together.
+//! The position nearest to the drawing meets them as far as the rows let it (`nearest.rs`): rows
+//! win where they contradict conditions, with a warning. Only dynamic simulations have conditions
+//! of joints and parts: kinematics and statics find their own configuration. Those of contacts
+//! count always: they choose among the ways in which the parts can be put together.
 
 use crate::analysis::start::{assemble, branch};
 use crate::analysis::warning::ConditionWarning;
@@ -253,8 +253,8 @@ fn of_lines(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
     found
 }
 
-/// Returns the orientation that the angles of a marker or a ball ask for together; `None`: each is a
-/// condition of its own.
+/// Returns the orientation that the angles of a marker or a ball ask for together; `None`: each is
+/// a condition of its own.
 fn orientation(
     scene: &Scene,
     model: &Model,
@@ -369,8 +369,8 @@ impl Equation {
     }
 }
 
-/// Everything that is wanted of a position beside its rows: conditions, orientations, where contacts
-/// begin; or the turns of orientation rows in place of these rows.
+/// Everything that is wanted of a position beside its rows: conditions, orientations, where
+/// contacts begin; or the turns of orientation rows in place of these rows.
 #[derive(Default)]
 pub(super) struct Wanted {
     conditions: Vec<InitialCondition>,

@@ -1,5 +1,5 @@
-//! The mechanisms of a scene, which nothing but forces couples: each is assembled by itself, so that
-//! what else is in a model changes no bit of it.
+//! The mechanisms of a scene, which nothing but forces couples: each is assembled by itself, so
+//! that what else is in a model changes no bit of it.
 
 use crate::numeric::connected::{SparseRow, connected};
 use crate::scene::Scene;
@@ -107,8 +107,8 @@ pub(super) fn mechanisms<'g>(
     all
 }
 
-/// Returns the metric of the velocities in which the size of a mechanism is like a radian: squares of
-/// what counts as one   (n_v)
+/// Returns the metric of the velocities in which the size of a mechanism is like a radian: squares
+/// of what counts as one   (n_v)
 pub(super) fn weights(all: &[Mechanism], n_v: usize) -> Vec<f64> {
     let mut w = vec![1.0; n_v];
     for mechanism in all {

@@ -45,12 +45,13 @@ use crate::space::{Frame, Vec3, rotation};
 
 /// Compliance of a value that is given, against that of where parts are drawn.
 const GIVEN: f64 = 1e-10;
-/// The ρ of (2): rows whose strength σ² is less than this leave out what they ask for beyond others.
+/// The ρ of (2): what a row asks for beyond others is followed at once where its strength σ² is
+/// more than this, else step by step. Far above the part of a column that counts as zero, 1e-14.
 const DEPENDENT: f64 = 1e-12;
-/// Iterations, at most.
-const MAX_ITERATIONS: usize = 40;
+/// Iterations towards rows, at most.
+pub(super) const MAX_ITERATIONS: usize = 100;
 /// Longest change of a coordinate in one iteration, rad or parts of the mechanism's size.
-const LONGEST_STEP: f64 = 0.5;
+pub(super) const LONGEST_STEP: f64 = 0.5;
 /// Deviation of parts, rows and given values that are in place already.
 const IN_PLACE: f64 = 1e-9;
 /// Change of a coordinate at which the iteration has converged.
