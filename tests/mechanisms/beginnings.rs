@@ -198,6 +198,20 @@ fn constraints_win_over_initial_values_with_a_warning() {
     }
 }
 
+/// Of values that contradict each other both are told, and no constraint is blamed that there is not.
+#[test]
+fn initial_values_that_contradict_each_other_are_both_told() {
+    let text = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nMARKER/3, PART=2, QP=1,0,0\n\
+                ! cognate: IC MARKER/2, X=1\n! cognate: IC MARKER/3, X=5\n";
+    let (found, warnings) = start(text, &["DX(2,1)"]);
+    near(&found, &[2.5]);
+    for (marker, rest) in [(2, "leave 2.5 instead of 1"), (3, "leave 3.5 instead of 5")] {
+        let begins =
+            format!("MARKER/{marker} X cannot be met: constraints and other initial values {rest}");
+        assert!(warnings.contains(&begins), "{begins}: {warnings:?}");
+    }
+}
+
 #[test]
 fn statics_do_not_ask_for_initial_places() {
     let text = "ACCGRAV/KGRAV=-10\nPART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=2, J=1\n\

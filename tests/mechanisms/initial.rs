@@ -103,7 +103,7 @@ fn a_motion_against_an_initial_condition_is_told() {
     for (ic, words) in [
         (
             "0.3, 2",
-            "JOINT/1 IC cannot be met: the constraints leave 0.5 instead of 0.3",
+            "JOINT/1 IC cannot be met: constraints and other initial values leave 0.5 instead of 0.3",
         ),
         (
             "0.5, 3",

@@ -139,7 +139,8 @@ impl ConditionWarning {
             } => {
                 let [found, wanted] = apart(*found, *wanted);
                 format!(
-                    " {argument} cannot be met: the constraints leave {found} instead of {wanted}"
+                    " {argument} cannot be met: constraints and other initial values leave {found} \
+                     instead of {wanted}"
                 )
             }
             ConditionWarning::UnmetContact {

@@ -147,7 +147,8 @@ Typed numbers are off by little; much means a wrong QP, REULER or marker.
         name: "initial_condition",
         summary: "an initial condition that cannot be met, or that is read in another way than documented",
         explanation: "\
-The constraints leave no room for what an IC or EXACT asks, or the two numbers of a joint's IC fit the parts better when they are
+The constraints leave no room for what an IC or EXACT asks, initial values contradict each other, which are then met halfway, or the
+two numbers of a joint's IC fit the parts better when they are
 exchanged: Adams View writes velocity, displacement. An angle begins within half a turn: of more, whole turns do not count.
 
     JOINT/1, REVOLUTE, I=21, J=11, IC=90D,0        displacement, velocity",
