@@ -80,7 +80,7 @@ impl<'a> Dataset<'a> {
             driven_start::drive((scene, &mut driven), asked, t, &mut there, x, &mut *look);
         look()?;
         if is_driven {
-            let outcome = self.near(&mut driven, &mut there, false, look);
+            let outcome = self.near(&mut driven, &mut there, Origin::Beginning, look);
             look()?;
             if outcome.is_ok() && right(&driven, &there) {
                 *configuration = driven;
@@ -88,7 +88,7 @@ impl<'a> Dataset<'a> {
                 return outcome;
             }
         }
-        let first = self.near(configuration, q, true, look);
+        let first = self.near(configuration, q, Origin::Drawn, look);
         look()?;
         if first.is_ok() && right(configuration, q) {
             return first;
@@ -99,9 +99,9 @@ impl<'a> Dataset<'a> {
                 continue;
             }
             // placed near the drawing, or else where the turns have led
-            for placed in [true, false] {
+            for origin in [Origin::Drawn, Origin::Beginning] {
                 let (mut other, mut p) = (turned.clone(), there.clone());
-                let second = self.near(&mut other, &mut p, placed, look);
+                let second = self.near(&mut other, &mut p, origin, look);
                 look()?;
                 if second.is_ok() && right(&other, &p) {
                     *configuration = other;
@@ -118,7 +118,7 @@ impl<'a> Dataset<'a> {
         &self,
         configuration: &mut Configuration,
         q: &mut [f64],
-        placed: bool,
+        origin: Origin,
         look: Look<'_>,
     ) -> Assembled {
         let Self {
@@ -130,11 +130,6 @@ impl<'a> Dataset<'a> {
         let numbers = assemble::numbers(here, t, q, &vec![0.0; scene.layout.n_v], x);
         let wanted = Wanted::new(here, &self.conditions, &numbers);
         let place = (scene, &mut *configuration);
-        let origin = if placed {
-            Origin::Drawn
-        } else {
-            Origin::Beginning
-        };
         nearest(place, (Some(model), &wanted), t, q, x, origin);
         look()?;
         let assembly = assemble::positions_while(scene, configuration, t, q, x, look)?;
