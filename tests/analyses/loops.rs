@@ -405,6 +405,18 @@ fn reactions_of_joints_that_are_left_out_may_be_read() {
             assert!((a - b).abs() < 1e-7 * b.abs(), "{first:?} {second:?}");
         }
     }
+    // two hinges leave open how forces and torques are shared, but not the torque about their axis, which neither bears
+    let along = "SFORCE/1, ROTATIONAL, ACTIONONLY, I=2, J=1, FUNCTION=-0.008*SQRT(1+(JOINT(1,0,8,0)+TZ(3,10,10))**2)\n";
+    let s = run(&format!("{pair}{along}"), &columns, "DOP853", 0.1);
+    assert!(
+        s.run
+            .record
+            .warnings
+            .iter()
+            .all(|w| w.code != "open_reaction"),
+        "{:?}",
+        s.run.record.warned()
+    );
     assert!((ends(&friction(2))[0] - 4.924242071).abs() < 1e-7);
     assert!((ends("")[0] - 5.0).abs() < 1e-12);
 }

@@ -47,6 +47,15 @@ fn scene(name: &str) -> Model {
     model
 }
 
+/// Draws parts where they do not fit, by gaps of this size and more.
+fn draw_apart(model: &mut Model, gap: f64) {
+    let parts = model.parts.values_mut().filter(|p| !p.ground);
+    for (k, part) in parts.enumerate() {
+        part.qg[k % 3] += gap * (1.0 + k as f64);
+        part.qg[(k + 1) % 3] -= 2.0 * gap;
+    }
+}
+
 /// Places of all centres of mass against a marker of ground, in its axes.
 fn measured(model: &Model) -> Vec<String> {
     let ground = model.parts.iter().find(|p| p.1.ground).map(|p| *p.0);
@@ -236,11 +245,7 @@ fn where_ground_is_does_not_matter_to_parts_that_do_not_fit() {
     ] {
         for gap in [1e-3, 1e-2] {
             let mut model = scene(name);
-            let parts = model.parts.values_mut().filter(|p| !p.ground);
-            for (k, part) in parts.enumerate() {
-                part.qg[k % 3] += gap * (1.0 + k as f64);
-                part.qg[(k + 1) % 3] -= 2.0 * gap;
-            }
+            draw_apart(&mut model, gap);
             let columns = measured(&model);
             let (a, b) = (solved(&model, &columns), solved(&moved(&model), &columns));
             agree(name, "gaps", &columns, &a, &b, |_| 1.0);
@@ -299,10 +304,7 @@ fn lengths_of_any_size_do_not_matter() {
     for name in SCENES {
         for gap in [0.0, 1e-2] {
             let mut model = scene(name);
-            let parts = model.parts.values_mut().filter(|p| !p.ground);
-            for (k, part) in parts.enumerate() {
-                part.qg[k % 3] += gap * (1.0 + k as f64);
-            }
+            draw_apart(&mut model, gap);
             model.units = None;
             let columns = measured(&model);
             let a = solved(&model, &columns);
@@ -545,11 +547,7 @@ fn what_nothing_couples_to_a_mechanism_changes_no_bit_of_its_assembly() {
     for name in SCENES {
         for gap in [0.0, 1e-6, 1e-2, 0.1] {
             let mut model = scene(name);
-            let parts = model.parts.values_mut().filter(|p| !p.ground);
-            for (k, part) in parts.enumerate() {
-                part.qg[k % 3] += gap * (1.0 + k as f64);
-                part.qg[(k + 1) % 3] -= 2.0 * gap;
-            }
+            draw_apart(&mut model, gap);
             let columns = measured(&model);
             let places = |model: &Model| {
                 let options = Options {

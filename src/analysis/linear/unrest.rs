@@ -17,7 +17,6 @@
 
 use super::modes::center;
 use super::{Linearization, Small, along, directions, undetermined};
-use crate::analysis::start::velocities::size_of;
 use crate::analysis::system::{System, complaints};
 use crate::analysis::warning::{Rate, Unrest};
 use crate::diagnostic::{Diagnostic, Subject};
@@ -141,7 +140,7 @@ impl State<'_> {
     /// Returns the rates of parts, each over what counts as none.
     fn parts(&self) -> Vec<(f64, Unrest)> {
         let scene = &self.system.scene;
-        let (length, frequency) = (size_of(scene), self.frequency());
+        let (length, frequency) = (scene.size, self.frequency());
         let changes = self.changes(length);
         // the size of a vector, and of its slopes
         let size = |first: usize| {
@@ -195,7 +194,7 @@ impl State<'_> {
     /// Returns the rates of states that something reads, each over what counts as none.
     fn states(&self) -> Vec<(f64, Unrest)> {
         let l = self.system.scene.layout;
-        let changes = self.changes(size_of(&self.system.scene));
+        let changes = self.changes(self.system.scene.size);
         let (first, n) = (self.rates.len() - l.n_x, self.slopes.ncols() - l.n_x);
         let is_read = |k: usize| self.found.a.iter().any(|row| row[n + k] != 0.0);
         let of = |k: usize| {

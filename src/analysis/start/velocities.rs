@@ -180,11 +180,6 @@ pub(in crate::analysis) fn velocities_while(
     Ok(Beginning { v, is_weighed })
 }
 
-/// Returns the length in which ways are counted beside angles.
-pub(in crate::analysis) fn size_of(scene: &Scene) -> f64 {
-    if scene.size > 0.0 { scene.size } else { 1.0 }
-}
-
 /// Returns warnings of the joints whose initial rate is not that of their IC, and of the parts
 /// whose velocity is not the one that they are given.
 pub fn unmet(

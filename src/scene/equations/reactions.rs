@@ -257,24 +257,13 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// FM … TZ: all that acts between two markers.
     pub(super) fn generic_force(&self, measure: Measure, ids: [u32; 4], asked_by: &Asker) -> S {
-        use Measure as M;
         let [i, j, k, _] = ids;
         if self.scratch.solving.get() && self.carries_reaction(i, j) {
             let key = Key::Measure(measure, ids);
             return self.too_early(key, asked_by, Lack::OwnReaction(measure));
         }
-        let comp = match measure {
-            M::Fm => 1,
-            M::Fx => 2,
-            M::Fy => 3,
-            M::Fz => 4,
-            M::Tm => 5,
-            M::Tx => 6,
-            M::Ty => 7,
-            _ => 8,
-        };
         let total = self.between(i, j);
-        self.component(&total, comp, k, asked_by)
+        self.component(&total, generic_component(measure), k, asked_by)
     }
 
     /// Returns true if a constraint acts between two markers, given by their numbers.
@@ -283,27 +272,38 @@ impl<S: Scalar> Equations<'_, S> {
         all.any(|c| (self.named(c)).is_some_and(|m| m == (i, j) || m == (j, i)))
     }
 
-    /// Returns which constraints have a reaction that loads read, as an unknown of the loops:
-    /// indices in the constraints, ascending.
-    pub fn reactions_in_loops(&self) -> Vec<usize> {
+    /// Returns what loads that read reactions, as unknowns of the loops, would read of these
+    /// actions of constraints on their I markers: index of the constraint, the value, and whether
+    /// it is a torque.   (actions: n_constraints)
+    pub fn read_in_loops(&self, actions: &[Action<S>]) -> Vec<(usize, S, bool)> {
         let scene = self.scene;
-        let mut read: Vec<usize> = Vec::new();
+        let mut read = Vec::new();
         for unknown in &scene.loops {
             let Key::Measure(measure, ids) = unknown.key else {
                 continue;
             };
             let element = element_of(measure, ids[0]);
-            let pair = (element.is_none() && measure.row().family == Family::GenericForce)
-                .then_some([(ids[0], ids[1]), (ids[1], ids[0])]);
-            let is_read = |c: &ConstraintElement| {
-                let between = pair.zip(self.named(c));
-                element == Some(c.id) || between.is_some_and(|(pair, named)| pair.contains(&named))
-            };
-            let all = scene.constraints.iter().enumerate();
-            read.extend(all.filter(|(_, c)| is_read(c)).map(|(k, _)| k));
+            let is_generic = measure.row().family == Family::GenericForce;
+            for (c, constraint) in scene.constraints.iter().enumerate() {
+                let named = self.named(constraint).filter(|_| is_generic);
+                let between = named.filter(|m| [*m, (m.1, m.0)].contains(&(ids[0], ids[1])));
+                let (comp, rm, on_j) = match between {
+                    Some(markers) => {
+                        let on_j = markers != (ids[0], ids[1]);
+                        (generic_component(measure), ids[2], on_j)
+                    }
+                    None if element == Some(constraint.id) => (ids[2], ids[3], ids[1] == 1),
+                    None => continue,
+                };
+                let point = |m: usize| self.marker(m).p_GM;
+                let action = match constraint.markers.filter(|_| on_j) {
+                    Some((i, j)) => actions[c].reaction(point(i), point(j)),
+                    None => actions[c],
+                };
+                let value = self.component(&action, comp, rm, &unknown.asker);
+                read.push((c, value, comp > 4));
+            }
         }
-        read.sort_unstable();
-        read.dedup();
         read
     }
 
@@ -367,6 +367,21 @@ fn negative<S: Scalar>(a: &Action<S>) -> Action<S> {
     Action {
         force: -a.force,
         torque: -a.torque,
+    }
+}
+
+/// Returns the component of all that acts between two markers which a measure returns.
+fn generic_component(measure: Measure) -> u32 {
+    use Measure as M;
+    match measure {
+        M::Fm => 1,
+        M::Fx => 2,
+        M::Fy => 3,
+        M::Fz => 4,
+        M::Tm => 5,
+        M::Tx => 6,
+        M::Ty => 7,
+        _ => 8,
     }
 }
 
