@@ -50,3 +50,4 @@ mod statics;
 mod sweeps;
 mod swings;
 mod systems;
+mod units;

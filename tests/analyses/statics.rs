@@ -400,7 +400,7 @@ fn of_what_moves_the_load_that_nothing_carries_is_named() {
     );
     let why = cannot_rest(&text);
     assert!(
-        why.contains("force of 9.81")
+        why.contains("force of 98.1 on")
             && why.contains("on PART/3")
             && why.contains("(0.000000, 0.000000, -1.000000)")
             && why.contains("nothing carries it"),

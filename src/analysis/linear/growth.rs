@@ -1,13 +1,12 @@
 //! The small motion that grows fastest.
 //!
 //! An eigenvalue counts as one that grows where its real part is larger than rounding makes it
-//! ([`is_rounding`]).
+//! ([`Part::is_rounding`](super::modes::Part::is_rounding)).
 
-use super::modes::{eigenvalues, is_rounding};
+use super::modes::parts;
 use super::{Small, directions, slopes, state_rows};
 use crate::analysis::system::System;
 use crate::arrange::Arrange;
-use nalgebra::linalg::balancing::balance_parlett_reinsch;
 
 /// Part of |λ| below which a real part counts as none: a push that grows to e times its size in
 /// 160 000 swings.
@@ -31,15 +30,19 @@ pub(in crate::analysis) fn growth(system: &mut System) -> Option<Option<Growth>>
         return Some(None);
     }
     let slopes = slopes(system, &[], &directions).ok()?;
-    let mut balanced = state_rows(system, &small, &slopes, false);
-    balance_parlett_reinsch(&mut balanced);
-    let mut values = eigenvalues(&balanced)?;
-    values.retain(|v| v.im >= 0.0 && v.re > LEAST_GROWTH * v.norm());
-    values.arrange_by(|a, b| b.re.total_cmp(&a.re));
+    let a = state_rows(system, &small, &slopes, false);
+    let mut values = Vec::new();
+    let parts = parts(&a);
+    for part in &parts {
+        let found = part.eigenvalues()?.into_iter();
+        let grows = found.filter(|v| v.im >= 0.0 && v.re > LEAST_GROWTH * v.norm());
+        values.extend(grows.map(|v| (v, part)));
+    }
+    values.arrange_by(|(a, _), (b, _)| b.re.total_cmp(&a.re));
     let grows = values
         .into_iter()
-        .find(|&v| !is_rounding(&balanced, v, v.re));
-    Some(grows.map(|v| Growth {
+        .find(|(v, part)| !part.is_rounding(*v, v.re));
+    Some(grows.map(|(v, _)| Growth {
         rate: v.re,
         frequency: v.im / std::f64::consts::TAU,
     }))

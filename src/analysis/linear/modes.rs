@@ -20,6 +20,7 @@ use crate::arrange::Arrange;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::numeric;
+use crate::numeric::connected::{SparseRow, connected};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::scene::equations::Equations;
@@ -50,36 +51,28 @@ pub(super) fn modes(
     if size == 0 {
         return Ok(Vec::new());
     }
-    let mut balanced = a.clone();
-    let scales = balance_parlett_reinsch(&mut balanced);
-    let mut values = eigenvalues(&balanced).ok_or_else(|| {
-        vec![Diagnostic::error(
-            "linear",
-            "the eigenvalues cannot be found: the iteration does not converge",
-        )]
-    })?;
-    let norm = balanced.norm();
-    for v in &mut values {
-        let size = v.norm();
-        if size < SURELY_NOT_FREE * norm && is_rounding(&balanced, *v, size) {
-            *v = Complex::new(0.0, 0.0);
-        }
-        // a real one that has been perturbed into a pair by less than rounding stays as it is
-        if v.im.abs() < 1e-14 * v.norm() {
-            v.im = 0.0;
-        }
-        if v.re.abs() < ROUNDING * v.im.abs() {
-            v.re = 0.0;
-        }
+    let parts = parts(a);
+    let mut values: Vec<(Complex<f64>, &Part)> = Vec::with_capacity(size);
+    for part in &parts {
+        let found = part.eigenvalues().ok_or_else(|| {
+            vec![Diagnostic::error(
+                "linear",
+                "the eigenvalues cannot be found: the iteration does not converge",
+            )]
+        })?;
+        values.extend(found.into_iter().map(|v| (part.without_rounding(v), part)));
     }
-    values.retain(|v| v.im >= 0.0);
-    values.arrange_by(|x, y| x.norm().total_cmp(&y.norm()).then(x.re.total_cmp(&y.re)));
+    values.retain(|(v, _)| v.im >= 0.0);
+    values.arrange_by(|(x, _), (y, _)| {
+        let by_size = x.norm().total_cmp(&y.norm());
+        by_size.then(x.re.total_cmp(&y.re))
+    });
     let [first, last] = wanted.shapes.unwrap_or([1, usize::MAX]);
     let motion = PartMotion::of(system, model, small);
     let names = system.scene.unknown_names();
     let mut found: Vec<Mode> = Vec::with_capacity(values.len());
-    let mut vectors: Vec<(Complex<f64>, DVector<Complex<f64>>)> = Vec::new();
-    for (k, &value) in values.iter().enumerate() {
+    let mut vectors: Vec<(Complex<f64>, &Part, DVector<Complex<f64>>)> = Vec::new();
+    for (k, &(value, part)) in values.iter().enumerate() {
         let mut mode = Mode {
             re: value.re,
             im: value.im,
@@ -89,17 +82,18 @@ pub(super) fn modes(
         if (first..=last).contains(&(k + 1)) {
             let near: Vec<&DVector<Complex<f64>>> = vectors
                 .iter()
-                .filter(|(v, _)| (v - value).norm() <= 1e-8 * value.norm().max(1e-6 * norm))
-                .map(|(_, x)| x)
+                .filter(|(v, other, _)| {
+                    let near = 1e-8 * value.norm().max(1e-6 * part.norm);
+                    std::ptr::eq(*other, part) && (v - value).norm() <= near
+                })
+                .map(|(_, _, x)| x)
                 .collect();
-            if let Some(x) = eigenvector(&balanced, value, norm, &near) {
-                let own = DVector::from_iterator(
-                    size,
-                    x.iter()
-                        .zip(scales.iter())
-                        .map(|(x, s)| x * Complex::new(*s, 0.0)),
-                );
-                vectors.push((value, x));
+            if let Some(x) = eigenvector(&part.balanced, value, part.norm, &near) {
+                let mut own = DVector::zeros(size);
+                for ((&place, x), s) in part.places.iter().zip(x.iter()).zip(part.scales.iter()) {
+                    own[place] = x * Complex::new(*s, 0.0);
+                }
+                vectors.push((value, part, x));
                 motion.show(&mut mode, &own, &names);
             }
         }
@@ -108,41 +102,91 @@ pub(super) fn modes(
     Ok(found)
 }
 
-/// Returns the eigenvalues of a balanced matrix, in no particular order; `None`: the iteration does
-/// not converge.
-pub(super) fn eigenvalues(balanced: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
-    let n = balanced.nrows();
-    if n < 2 {
-        return Some(balanced.iter().map(|&x| Complex::new(x, 0.0)).collect());
-    }
-    let mut by_rows = Hessenberg::new(balanced.clone()).unpack_h().transpose();
-    let found = numeric::eigenvalues::eigenvalues(by_rows.as_mut_slice(), n)?;
-    Some(
-        found
-            .into_iter()
-            .map(|(re, im)| Complex::new(re, im))
-            .collect(),
-    )
+/// A part of the states that nothing couples to the others, with its block of the matrix.
+pub(super) struct Part {
+    /// ascending
+    places: Vec<usize>,
+    balanced: DMatrix<f64>,
+    scales: DVector<f64>,
+    norm: f64,
 }
 
-/// Returns whether rounding of a balanced matrix may make a part of an eigenvalue so large (1).
-pub(super) fn is_rounding(balanced: &DMatrix<f64>, value: Complex<f64>, part: f64) -> bool {
-    let norm = balanced.norm();
-    let least = ROUNDING * norm;
-    if part <= least {
-        return true;
-    }
-    let right = eigenvector(balanced, value, norm, &[]);
-    let left = eigenvector(&balanced.transpose(), value.conj(), norm, &[]);
-    let (Some(right), Some(left)) = (right, left) else {
-        return true;
+/// Takes a matrix apart: what nothing couples has eigenvalues, and rounding, of its own.
+pub(super) fn parts(a: &DMatrix<f64>) -> Vec<Part> {
+    let n = a.nrows();
+    let row = |i: usize| {
+        let entries = (0..n).filter(|&j| a[(i, j)] != 0.0);
+        let others = entries.map(|j| (j, a[(i, j)]));
+        std::iter::once((i, 0.0)).chain(others).collect()
     };
-    // both are of length one
-    part * left.dotc(&right).norm() <= least
+    let rows: Vec<SparseRow> = (0..n).map(row).collect();
+    let blocks = connected(&rows, n).into_iter();
+    blocks
+        .map(|block| {
+            let places = block.columns;
+            let m = places.len();
+            let mut balanced = DMatrix::from_fn(m, m, |i, j| a[(places[i], places[j])]);
+            let scales = balance_parlett_reinsch(&mut balanced);
+            Part {
+                norm: balanced.norm(),
+                places,
+                balanced,
+                scales,
+            }
+        })
+        .collect()
+}
+
+impl Part {
+    /// Returns its eigenvalues, in no particular order; `None`: the iteration does not converge.
+    pub fn eigenvalues(&self) -> Option<Vec<Complex<f64>>> {
+        let n = self.balanced.nrows();
+        if n < 2 {
+            let all = self.balanced.iter();
+            return Some(all.map(|&x| Complex::new(x, 0.0)).collect());
+        }
+        let mut by_rows = Hessenberg::new(self.balanced.clone())
+            .unpack_h()
+            .transpose();
+        let found = numeric::eigenvalues::eigenvalues(by_rows.as_mut_slice(), n)?;
+        let pairs = found.into_iter();
+        Some(pairs.map(|(re, im)| Complex::new(re, im)).collect())
+    }
+
+    /// Returns an eigenvalue without what rounding makes of it.
+    fn without_rounding(&self, mut v: Complex<f64>) -> Complex<f64> {
+        let size = v.norm();
+        if size < SURELY_NOT_FREE * self.norm && self.is_rounding(v, size) {
+            return Complex::new(0.0, 0.0);
+        }
+        // a real one that has been perturbed into a pair by less than rounding stays as it is
+        if v.im.abs() < 1e-14 * v.norm() {
+            v.im = 0.0;
+        }
+        if v.re.abs() < ROUNDING * v.im.abs() {
+            v.re = 0.0;
+        }
+        v
+    }
+
+    /// Returns whether rounding of the matrix may make a part of an eigenvalue so large (1).
+    pub fn is_rounding(&self, value: Complex<f64>, part: f64) -> bool {
+        let least = ROUNDING * self.norm;
+        if part <= least {
+            return true;
+        }
+        let right = eigenvector(&self.balanced, value, self.norm, &[]);
+        let left = eigenvector(&self.balanced.transpose(), value.conj(), self.norm, &[]);
+        let (Some(right), Some(left)) = (right, left) else {
+            return true;
+        };
+        // both are of length one
+        part * left.dotc(&right).norm() <= least
+    }
 }
 
 /// Finds an eigenvector by inverse iteration, apart from those found before for the same value.
-pub(super) fn eigenvector(
+fn eigenvector(
     a: &DMatrix<f64>,
     value: Complex<f64>,
     norm: f64,

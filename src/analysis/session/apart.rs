@@ -1,5 +1,5 @@
-//! Mechanisms that nothing couples, each integrated by itself: an event of one is no event of the
-//! others, and each has the steps that it needs.
+//! Mechanisms that nothing couples, each brought to rest and integrated by itself: an event of one
+//! is no event of the others, and each has the steps that it needs.
 //!
 //! ```text
 //! whole      |--|-|-|--|-|        all begin anew at the events of each, until that has cost
@@ -18,6 +18,7 @@
 
 use super::carried::{ByElement, Carried};
 use super::{DYNAMIC, Options, Session};
+use crate::analysis::statics::{Equilibrium, Imbalance, NoEquilibrium};
 use crate::analysis::system::System;
 use crate::analysis::time::{dynamics, options, ranks};
 use crate::analysis::trajectory::{Ended, EnergyFlow, Trajectory};
@@ -71,7 +72,7 @@ impl Session {
             && scene.sensors.is_empty()
             && l.n_external == 0
             && l.n_downstream == 0
-            && scene.n_mechanisms() > 1
+            && scene.n_mechanisms() + usize::from(l.n_x > 0) > 1
     }
 
     /// Takes a system apart at a state, with so much time left; `None`: its mechanisms have to do
@@ -88,7 +89,7 @@ impl Session {
         session.folders.clone_from(&self.folders);
         session.shells.clone_from(&self.shells);
         (session.pace, session.records_again) = (self.pace, true);
-        let structures = session.structures.clone();
+        let (mode, structures) = (system.scene.mode as u32, session.structures.clone());
         let _looking = structures.look();
         let mut places = Places::of(&system.scene);
         let mut mechanisms = Vec::with_capacity(models.len());
@@ -96,13 +97,13 @@ impl Session {
             session.carried = Some(state.of(&model));
             session.model = model;
             session.is_checked = true;
-            let (mut part, _) = session.prepare(DYNAMIC, &[], watch).ok()?;
+            let (mut part, _) = session.prepare(mode, &[], watch).ok()?;
             let places = places.take(&part.scene)?;
             let mut settings = session.integration();
-            if settings.is_auto() {
+            if mode == DYNAMIC && settings.is_auto() {
                 settings.first = options::first_method(&mut part, left).into();
             }
-            if !self.pace.columns_alone {
+            if mode == DYNAMIC && !self.pace.columns_alone {
                 part.prepare_energy();
             }
             mechanisms.push(Mechanism {
@@ -112,7 +113,9 @@ impl Session {
                 energy: EnergyFlow::default(),
             });
         }
-        (places.is_empty() && mechanisms.len() > 1).then_some(Mechanisms(mechanisms))
+        // at rest the whole counts its turns itself
+        let is_whole = places.states.is_empty() && (mode != DYNAMIC || places.turns.is_empty());
+        (is_whole && mechanisms.len() > 1).then_some(Mechanisms(mechanisms))
     }
 
     /// Returns what mechanisms that are taken out of the model are asked for.
@@ -159,10 +162,6 @@ impl Places {
             places.push([own, self.turns.remove(&angle.id)?]);
         }
         Some(places)
-    }
-
-    fn is_empty(&self) -> bool {
-        self.states.is_empty() && self.turns.is_empty()
     }
 }
 
@@ -260,6 +259,32 @@ impl Mechanisms {
         }
         out.energy = before.followed_by(&self.energy());
         again
+    }
+
+    /// Brings each to rest, which nothing of the others has a say in, and the whole with them.
+    ///
+    /// # Errors
+    /// The first that is not balanced.
+    pub(super) fn settle(
+        &mut self,
+        system: &mut System,
+        mut settle: impl FnMut(&mut System) -> Result<Equilibrium, NoEquilibrium>,
+    ) -> Result<Equilibrium, NoEquilibrium> {
+        let mut all: Option<Equilibrium> = None;
+        for mechanism in &mut self.0 {
+            let found = settle(&mut mechanism.system);
+            for &[own, whole] in &mechanism.places {
+                system.numbers[whole] = mechanism.system.numbers[own];
+            }
+            let found = found?;
+            all = Some(all.map_or(found, |all| all.beside(&found)));
+        }
+        let (l, t) = (system.scene.layout, system.numbers[Layout::TIME]);
+        let y = system.numbers[l.y()].to_vec();
+        system.count_turns(t, &y);
+        let row = system.row(t, &y);
+        system.numbers.copy_from_slice(&row);
+        all.ok_or(NoEquilibrium::Unbalanced(Imbalance::Unknown))
     }
 
     /// Integrates all through some times, on some threads.

@@ -102,16 +102,28 @@ impl Session {
         watch: &mut dyn Watch,
     ) -> Equilibria {
         let mut settings = Settings::of(&self.model.equilibrium);
-        settings.error *= self.pace.rest;
-        settings.imbalance *= self.pace.rest;
+        let tolerances = [&mut settings.error, &mut settings.imbalance];
+        tolerances
+            .into_iter()
+            .flatten()
+            .for_each(|x| *x *= self.pace.rest);
         settings.pace = self.pace.steps;
         let mut all = Equilibria {
             method: "EQUILIBRIUM".into(),
             ..Equilibria::default()
         };
         let mut tilts = Tilts::of(system);
+        let begin = system.numbers.clone();
+        let parts = self.may_part(system).then_some(&*system);
+        let mut parts = parts.and_then(|whole| self.take_apart(whole, (&begin, 0.0), watch));
         for &t in times {
-            let found = match settle_at(system, &settings, t, watch, &mut all.stats) {
+            let stats = &mut all.stats;
+            let mut settle = |system: &mut System| settle_at(system, &settings, t, watch, stats);
+            let found = match &mut parts {
+                Some(parts) => parts.settle(system, settle),
+                None => settle(system),
+            };
+            let found = match found {
                 Ok(found) => found,
                 Err(why) => {
                     all.failed = Some(match why {

@@ -3,6 +3,7 @@
 
 use super::kept::Starts;
 use super::simulate::Span;
+use super::sizes::Sizes;
 use super::{Accuracy, Session};
 use crate::analysis::accuracy::{
     Bars, Comparison, LEAST_SIZE, SHORTER_STEPS, TIGHTER_REST, companion_request, partners, safety,
@@ -12,7 +13,6 @@ use crate::analysis::trajectory::{SETS_STEPS, Trajectory};
 use crate::analysis::warning::RunWarning;
 use crate::diagnostic::Error;
 use crate::results::{ChannelAccuracy, Kind, Run, Status};
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Events over steps from which on few steps lie between two of them, and their number hardly
@@ -89,11 +89,18 @@ pub(super) struct Integrated {
     has_many_events: bool,
     /// mean step, in s, where events or the way of a drive set the steps, and not the request
     unasked_step: Option<f64>,
+    /// the length of the scene
+    length: f64,
 }
 
 impl Integrated {
     /// Takes them from a trajectory.
-    pub(super) fn of(kind: Kind, trajectory: &Trajectory, error: f64, span: Span) -> Self {
+    pub(super) fn of(
+        kind: Kind,
+        trajectory: &Trajectory,
+        (error, length): (f64, f64),
+        span: Span,
+    ) -> Self {
         let steps = trajectory.stats.steps as f64;
         let duration = trajectory.t.last().map_or(0.0, |t| t - span.start);
         let at_events = trajectory.limited.events as f64 > SETS_STEPS * steps;
@@ -104,6 +111,7 @@ impl Integrated {
             events: trajectory.event_times.clone(),
             has_many_events: trajectory.event_times.len() as f64 > EVENTS_OVER_STEPS * steps,
             unasked_step: ((at_events || is_driven) && steps > 0.0).then(|| duration / steps),
+            length,
         }
     }
 }
@@ -112,6 +120,11 @@ impl Integrated {
     /// Returns the request, of what a method has integrated.
     pub(super) fn error(&self) -> Option<f64> {
         self.error
+    }
+
+    /// Returns the length of the scene.
+    pub(super) fn length(&self) -> f64 {
+        self.length
     }
 
     /// Returns the names of the methods that worked.
@@ -211,13 +224,16 @@ impl Session {
         if self.last.error.is_some() {
             accuracy.companions.push(request);
         }
-        let largest = largest_of_units(&self.run);
+        let run = &self.run;
+        let columns = run.columns.iter().skip(1).filter(|c| c.bar_of.is_none());
+        let columns = columns.map(|c| (c.unit.as_str(), c.values.as_slice()));
+        let sizes = Sizes::of(columns, &run.units, self.last.length);
         let own = begun.own..self.run.sequences.len();
         for (own, other) in own.zip(begun.companion..) {
             let rows = self.run.sequences[own].rows.clone();
             let others = companion.run.sequences.get(other);
             let others = others.map_or(0..0, |s| s.rows.clone());
-            self.compare(&companion, rows, others, &largest);
+            self.compare(&companion, rows, others, &sizes);
         }
         self.warn_of_errors();
         // one that ended otherwise would begin the next simulation elsewhere, and another one that
@@ -242,7 +258,7 @@ impl Session {
         companion: &Session,
         rows: Range<usize>,
         others: Range<usize>,
-        largest: &BTreeMap<String, f64>,
+        sizes: &Sizes,
     ) {
         let values = |run: &Run, column: usize, rows: &Range<usize>| -> Vec<f64> {
             let column = run.columns.get(column).map(|c| c.values.get(rows.clone()));
@@ -263,9 +279,9 @@ impl Session {
             };
             let own = values(&self.run, of, &rows);
             let other = values(&companion.run, of, &others);
-            let unit = self.run.columns[of].unit.as_str();
-            let found = comparison.bars(&own, &other, largest.get(unit).copied().unwrap_or(0.0));
-            let least = LEAST_SIZE * largest.get(unit).copied().unwrap_or(0.0);
+            let of_unit = sizes.get(&self.run.columns[of].unit);
+            let found = comparison.bars(&own, &other, of_unit);
+            let least = LEAST_SIZE * of_unit;
             let column = &mut self.run.columns[bar];
             if let Some(place) = column.values.get_mut(rows.clone()) {
                 place.copy_from_slice(&found.bars);
@@ -300,15 +316,4 @@ impl Session {
             None => accuracy.channels.push(channel),
         }
     }
-}
-
-/// Returns the largest value of all channels of each unit.
-fn largest_of_units(run: &Run) -> BTreeMap<String, f64> {
-    let mut largest = BTreeMap::new();
-    for column in run.columns.iter().skip(1).filter(|c| c.bar_of.is_none()) {
-        let most: &mut f64 = largest.entry(column.unit.clone()).or_default();
-        let finite = column.values.iter().filter(|x| x.is_finite());
-        *most = finite.fold(*most, |m, x| m.max(x.abs()));
-    }
-    largest
 }

@@ -20,6 +20,7 @@
 use super::companion::Pace;
 use super::phase::Phase;
 use super::simulate::Span;
+use super::sizes::{Sizes, largest};
 use super::{Accuracy, Session};
 use crate::analysis::accuracy::{
     Comparison, FEWEST_OUTPUTS, LEAST_SIZE, Safety, companion_request, looser_request, safety,
@@ -84,15 +85,12 @@ impl Sampled {
         }
     }
 
-    /// Returns for each column the largest value of all that have its unit.
-    fn sizes(&self, run: &Run) -> Vec<f64> {
-        let units = self.columns.iter().map(|&k| &run.columns[k].unit);
-        let mut all: BTreeMap<&String, f64> = BTreeMap::new();
-        for (unit, values) in units.clone().zip(&self.values) {
-            let most = all.entry(unit).or_default();
-            *most = most.max(largest(values));
-        }
-        units.map(|unit| all[unit]).collect()
+    /// Returns how large each column is by its unit; `length`: that of the scene.
+    fn sizes(&self, run: &Run, length: f64) -> Vec<f64> {
+        let units = self.columns.iter().map(|&k| run.columns[k].unit.as_str());
+        let values = self.values.iter().map(Vec::as_slice);
+        let sizes = Sizes::of(units.clone().zip(values), &run.units, length);
+        units.map(|unit| sizes.get(unit)).collect()
     }
 
     /// Takes what it wants of the last `n` rows that a run holds.
@@ -207,7 +205,8 @@ impl Session {
         let mut off = None;
         let asked = measured.settings.error;
         let mut found = None;
-        let sizes = measured.sampled.sizes(&self.run);
+        let length = self.last.length();
+        let sizes = measured.sampled.sizes(&self.run, length);
         for (request, pace) in self.paces_beside(measured) {
             let mut system = start.clone();
             if let Some(before) = measured.before {
@@ -356,9 +355,9 @@ impl Session {
             // an output between an event of the one and that of the other differs by itself
             shifts: &[],
         };
-        let sampled = measured.sampled;
-        let sizes = sampled.sizes(&self.run).into_iter();
-        let sizes = sizes.zip(other.sampled.sizes(&self.run));
+        let (sampled, length) = (measured.sampled, self.last.length());
+        let sizes = sampled.sizes(&self.run, length).into_iter();
+        let sizes = sizes.zip(other.sampled.sizes(&self.run, length));
         let accuracy = self.run.record.accuracy.get_or_insert_default();
         accuracy.companions.push(other.request);
         let columns = sampled.columns.iter().map(|&k| &self.run.columns[k]);
@@ -440,12 +439,6 @@ fn are_near(own: &Sampled, other: &Sampled, sizes: &[f64]) -> bool {
     };
     let both = own.values.iter().zip(&other.values);
     both.zip(sizes).all(near)
-}
-
-/// Returns the largest of some values.
-fn largest(values: &[f64]) -> f64 {
-    let finite = values.iter().filter(|x| x.is_finite());
-    finite.fold(0.0, |m: f64, x| m.max(x.abs()))
 }
 
 /// Returns the places in two ascending lists of the times that both have.

@@ -33,6 +33,7 @@ mod settings;
 pub(in crate::analysis) mod shells;
 mod shown;
 mod simulate;
+mod sizes;
 mod spline_range;
 mod start;
 pub mod state;

@@ -73,7 +73,7 @@ impl Session {
         if settings.is_auto() && kind == Kind::Dynamic {
             self.stiffness.see(&trajectory, span.end - span.start);
         }
-        self.last = Integrated::of(kind, &trajectory, settings.error, span);
+        self.last = Integrated::of(kind, &trajectory, (settings.error, system.scene.span), span);
         // what the next simulation begins with
         let last = trajectory.rows.last().cloned().unwrap_or(first);
         self.keep(system, last);

@@ -10,10 +10,12 @@ use nalgebra::{DMatrix, DVector};
 /// Part of the loads below which what is left of them is rounding.
 const ROUNDING: f64 = 1e-13;
 /// Part of the loads below which an iteration that no longer improves has arrived.
-const STAGNANT: f64 = 1e-8;
+pub(super) const STAGNANT: f64 = 1e-8;
 /// Factor by which steps may become longer while something soft between what is stiff still goes:
 /// then the matrix keeps a digit.
 const SOFT_FACTOR: f64 = 1e3;
+/// Way of the shortest step, in rad or in sizes of the mechanism: shorter ones are rounding.
+const SHORTEST: f64 = 1e-14;
 /// Samples of what rounding could do.
 const NOISE_SAMPLES: usize = 4;
 /// Steps of the descent at most, whatever MAXIT says of Newton.
@@ -123,7 +125,9 @@ struct Left {
     floor: f64,
     /// what it does in the equations of the states
     states: f64,
-    /// hardly more than that is left
+    /// hardly more than that is left of loads, and of states
+    rests: [bool; 2],
+    /// of both
     small: bool,
 }
 
@@ -161,8 +165,8 @@ impl Settler<'_> {
                 return Err(NoEquilibrium::Interrupted);
             }
             // as good as was asked for: go on only as long as that soon ends
-            let asked = self.settings.asked;
-            let enough = self.converged(p) && (left.small || asked);
+            let asked = self.settings.asked();
+            let enough = self.converged(p, &left) && (left.small || asked);
             if course.is_polished(enough, p.left[0], asked) {
                 return Ok(());
             }
@@ -177,7 +181,7 @@ impl Settler<'_> {
             let step = match self.search(p, jacobian, &left, (length, longest)) {
                 Ok(step) => step,
                 Err(NoStep::Arrived) => return Ok(()),
-                Err(NoStep::Unforeseen) if left.small || self.converged(p) => return Ok(()),
+                Err(NoStep::Unforeseen) if left.small || self.converged(p, &left) => return Ok(()),
                 Err(NoStep::Unforeseen) => return self.unless_rounding(p, jacobian, &left),
             };
             // take it
@@ -195,13 +199,16 @@ impl Settler<'_> {
     fn left(&self, p: &Point, jacobian: &DMatrix<f64>, scales: [f64; 2]) -> Left {
         let noise = self.noise(jacobian);
         let floor = p.metric.size(&noise);
-        let small =
-            p.left[0] <= (STAGNANT * scales[0]).max(floor) && p.left[1] <= STAGNANT * scales[1];
+        let rests = [
+            p.left[0] <= (STAGNANT * scales[0]).max(floor),
+            p.left[1] <= STAGNANT * scales[1],
+        ];
         Left {
             noise,
             floor,
             states: self.state_noise(p, jacobian),
-            small,
+            rests,
+            small: rests == [true; 2],
         }
     }
 
@@ -212,7 +219,7 @@ impl Settler<'_> {
         jacobian: &DMatrix<f64>,
         left: &Left,
     ) -> Result<(), NoEquilibrium> {
-        if self.is_rounding(p, jacobian, &left.noise) {
+        if self.is_rounding(p, jacobian, left) {
             return Ok(());
         }
         Err(self.unbalanced(p))
@@ -230,7 +237,7 @@ impl Settler<'_> {
         if !left.small {
             return Some(longest);
         }
-        if !self.is_rounding(p, jacobian, &left.noise) {
+        if !self.is_rounding(p, jacobian, left) {
             // something soft between what is stiff still goes
             return Some(longest * SOFT_FACTOR);
         }
@@ -247,6 +254,7 @@ impl Settler<'_> {
         (mut length, longest): (f64, f64),
     ) -> Result<Taken, NoStep> {
         let mut wanted = 0.0;
+        let fastest = self.fastest(p);
         loop {
             let pace = Pace::new(length, jacobian, self.n_v());
             let floor = [left.floor, left.states];
@@ -271,14 +279,14 @@ impl Settler<'_> {
                 return Err(NoStep::Unforeseen);
             }
             length *= 0.25;
-            if length < 1e-14 * longest.min(1e6) {
+            if length * fastest < SHORTEST {
                 return Err(NoStep::Unforeseen);
             }
         }
     }
 
     /// Returns how large forces are, in the metric, whatever cancels.
-    fn load_scale(&self, p: &Point) -> f64 {
+    pub(super) fn load_scale(&self, p: &Point) -> f64 {
         let scene = self.system.configured();
         let at = Equations::new(scene, &p.numbers);
         let scale = at.load_scale();
@@ -314,7 +322,7 @@ impl Settler<'_> {
     }
 
     /// Returns a radian, or the size of the mechanism, for each coordinate.
-    fn units(&self) -> Vec<f64> {
+    pub(super) fn units(&self) -> Vec<f64> {
         let scene = &self.system.scene;
         let mut unit = vec![1.0; self.n_v()];
         for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
@@ -328,12 +336,12 @@ impl Settler<'_> {
     /// Returns whether what is left is what the last digits of the positions make of stiff forces:
     /// in every coordinate by its size, and in soft directions, where stiff forces cancel, by what
     /// Newton's step would still do about it.
-    fn is_rounding(&mut self, p: &Point, jacobian: &DMatrix<f64>, noise: &DVector<f64>) -> bool {
+    fn is_rounding(&mut self, p: &Point, jacobian: &DMatrix<f64>, left: &Left) -> bool {
         let unit = self.units();
         let within = (0..self.n_v()).all(|i| {
             let stiffness = (0..self.n_v()).map(|v| jacobian[(i, v)].abs() * unit[v]);
             p.force[i].abs() <= 16.0 * f64::EPSILON * stiffness.sum::<f64>()
-        }) && p.state.amax() <= self.settings.error;
+        }) && self.at_rest(p, left);
         if !within {
             return false;
         }
@@ -348,7 +356,7 @@ impl Settler<'_> {
         // noise of any sign; a few samples tell how far it goes
         let mut signs = 0x9e37_79b9_7f4a_7c15_u64;
         let reach = (0..NOISE_SAMPLES).filter_map(|_| {
-            let any = noise.map(|n| {
+            let any = left.noise.map(|n| {
                 signs = signs.rotate_left(7).wrapping_mul(0xd128_2a95_8b1c_9e6d);
                 if signs >> 63 == 0 { n } else { -n }
             });
@@ -366,37 +374,52 @@ impl Settler<'_> {
         states.fold(0.0, f64::max)
     }
 
+    /// Returns how fast the descent begins, in rad or in sizes of the mechanism over its own time.
+    fn fastest(&self, p: &Point) -> f64 {
+        let rate = p.metric.solve(&p.force);
+        let rates = rate.iter().zip(self.units());
+        rates.fold(p.state.amax(), |most, (x, unit)| most.max(x.abs() / unit))
+    }
+
     /// Returns the length of the first step: a hundredth of the mechanism's size, or of a radian.
     fn first(&self, p: &Point) -> f64 {
-        let scene = &self.system.scene;
-        let rate = p.metric.solve(&p.force);
-        let mut fastest = p.state.amax();
-        for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
-            if let Some(v) = f.v {
-                let unit = if c.angular { 1.0 } else { scene.length };
-                fastest = fastest.max(rate[v].abs() / unit);
-            }
-        }
+        let fastest = self.fastest(p);
         self.settings.pace * if fastest > 0.0 { 0.01 / fastest } else { 1.0 }
     }
 
     /// Returns the length of a step that is Newton's but for the part of the mass that STABILITY
     /// asks for, small against all stiffness.
     pub(super) fn longest(&self, p: &Point, jacobian: &DMatrix<f64>) -> f64 {
-        let n = self.n_v();
+        let unit = self.units();
         let mut least = f64::INFINITY;
-        for v in 0..n {
-            let stiffness = (0..n).map(|i| jacobian[(i, v)].abs()).fold(0.0, f64::max);
+        for (v, own) in unit.iter().enumerate() {
+            let loads = unit.iter().enumerate();
+            let stiffness = loads.fold(0.0, |most: f64, (i, unit)| {
+                most.max(jacobian[(i, v)].abs() * unit)
+            });
             if stiffness > 0.0 {
-                least = least.min(stiffness / p.metric.mass[v].max(1e-300));
+                least = least.min(stiffness / (own * p.metric.mass[v]).max(f64::MIN_POSITIVE));
             }
         }
-        let scale = if least.is_finite() { least } else { 1.0 };
+        let scale = match (least.is_finite(), self.fastest(p)) {
+            (true, _) => least,
+            // nothing is stiff: it falls
+            (false, fastest) if fastest > 0.0 => fastest,
+            (false, _) => 1.0,
+        };
         1.0 / (scale * self.settings.stability.min(1e-2) * 1e-7)
     }
 
-    /// Returns whether what is left satisfies the tolerances of EQUILIBRIUM.
-    fn converged(&self, p: &Point) -> bool {
-        p.force.amax() <= self.settings.imbalance && p.state.amax() <= self.settings.error
+    /// Returns whether what is left satisfies the tolerances of EQUILIBRIUM, and where it has none
+    /// is hardly more than rounding.
+    fn converged(&self, p: &Point, left: &Left) -> bool {
+        let limit = self.settings.imbalance;
+        limit.map_or(left.rests[0], |limit| p.force.amax() <= limit) && self.at_rest(p, left)
+    }
+
+    /// The same of the states.
+    fn at_rest(&self, p: &Point, left: &Left) -> bool {
+        let limit = self.settings.error;
+        limit.map_or(left.rests[1], |limit| p.state.amax() <= limit)
     }
 }

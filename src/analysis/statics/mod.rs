@@ -60,18 +60,16 @@ const PUSH: f64 = 0.01;
 /// The settings of EQUILIBRIUM.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// ERROR: largest change of a coordinate in the last iteration
-    pub error: f64,
-    /// TLIMIT: largest translation in one iteration
-    pub translation: f64,
+    /// ERROR: largest rate of a state that may remain; `None`: what rounding leaves
+    pub error: Option<f64>,
+    /// TLIMIT: largest translation in one iteration; `None`: the size of the mechanism
+    pub translation: Option<f64>,
     /// ALIMIT: largest rotation in one iteration   (rad)
     pub angle: f64,
     /// MAXIT
     pub iterations: usize,
-    /// IMBALANCE: largest force or torque that may remain
-    pub imbalance: f64,
-    /// whether ERROR and IMBALANCE were asked for, and not only taken for granted
-    pub asked: bool,
+    /// IMBALANCE: largest force or torque that may remain; `None`: what rounding leaves
+    pub imbalance: Option<f64>,
     /// STABILITY: least part of the mass matrix that is added to the stiffness
     pub stability: f64,
     /// factor of the first step: another one goes another way to the same place, whose last digits
@@ -80,25 +78,27 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Takes the settings of a model, defaults where it says nothing.
+    /// Takes the settings of a model, defaults where it says nothing. No default is a length, a
+    /// force or a time.
     pub fn of(settings: &model::EquilibriumSettings) -> Self {
-        let number = |given: Option<f64>, default: f64| {
-            given
-                .filter(|x| x.is_finite() && *x > 0.0)
-                .unwrap_or(default)
-        };
+        let given = |number: Option<f64>| number.filter(|x| x.is_finite() && *x > 0.0);
         Self {
-            error: number(settings.error, 1e-4),
-            translation: number(settings.tlimit, 20.0),
-            angle: number(settings.alimit, 10f64.to_radians()),
-            iterations: number(settings.maxit, 25.0) as usize,
-            imbalance: number(settings.imbalance, 1e-4),
-            asked: settings.error.is_some() && settings.imbalance.is_some(),
-            stability: number(settings.stability, 1e-5),
+            error: given(settings.error),
+            translation: given(settings.tlimit),
+            angle: given(settings.alimit).unwrap_or(10f64.to_radians()),
+            iterations: given(settings.maxit).unwrap_or(25.0) as usize,
+            imbalance: given(settings.imbalance),
+            stability: given(settings.stability).unwrap_or(1e-5),
             pace: 1.0,
         }
     }
+
+    /// Returns whether it is said how good is good enough.
+    fn asked(&self) -> bool {
+        self.error.is_some() && self.imbalance.is_some()
+    }
 }
+
 /// An equilibrium; its configuration stands in the numbers of the system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equilibrium {
@@ -111,6 +111,23 @@ pub struct Equilibrium {
     /// whether these decide what becomes of a push: loads have a potential, what depends on
     /// velocities takes energy, and no state acts back
     pub is_passive: bool,
+}
+
+impl Equilibrium {
+    /// Returns that of this mechanism and of another one that nothing couples to it.
+    pub(in crate::analysis) fn beside(&self, other: &Self) -> Self {
+        let [own, others] = [self.stability, other.stability];
+        Self {
+            iterations: self.iterations + other.iterations,
+            imbalance: self.imbalance.max(other.imbalance),
+            stability: Stability {
+                stable: own.stable + others.stable,
+                neutral: own.neutral + others.neutral,
+                unstable: own.unstable + others.unstable,
+            },
+            is_passive: self.is_passive && other.is_passive,
+        }
+    }
 }
 
 /// The reason why there is no equilibrium.

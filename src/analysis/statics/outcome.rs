@@ -1,8 +1,10 @@
 //! The reason why no equilibrium is found: the load that nothing carries.
 
+use super::descent::STAGNANT;
 use super::point::Point;
 use super::step::Pace;
 use super::{NoEquilibrium, Settler};
+use crate::analysis::quantity::short;
 use crate::scene::Scene;
 use crate::scene::equations::{Equations, Unsupported};
 use crate::space::Vec3;
@@ -81,7 +83,8 @@ impl fmt::Display for Imbalance {
                 };
                 write!(
                     f,
-                    "no equilibrium: a {what} of {size:.6e} on {part} remains along ({x:.6}, {y:.6}, {z:.6}), {coordinate}{nothing}"
+                    "no equilibrium: a {what} of {} on {part} remains along ({x:.6}, {y:.6}, {z:.6}), {coordinate}{nothing}",
+                    short(*size)
                 )
             }
             Imbalance::Unknown => f.write_str("no equilibrium"),
@@ -141,7 +144,8 @@ impl Settler<'_> {
             let size = |k: usize| p.state[k].abs();
             size(a).total_cmp(&size(b))
         });
-        if let (Some(k), true) = (state, worst.as_ref().is_none_or(|w| w.0 < 1e-9)) {
+        let balanced = p.left[0] <= STAGNANT * self.load_scale(p);
+        if let (Some(k), true) = (state, balanced || worst.is_none()) {
             let place = self.states[k];
             return NoEquilibrium::Unbalanced(Imbalance::Rate {
                 name: scene.unknowns.x[place].to_string(),

@@ -7,6 +7,7 @@ use super::stability::asymmetry;
 use crate::numeric::Ode;
 use crate::numeric::dense::Lu;
 use crate::numeric::envelope;
+use crate::numeric::sparse::inverse_power;
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
 use crate::scene::tunnelling::ThicknessBound;
@@ -40,6 +41,47 @@ impl Pace {
         Self {
             length,
             states: own.map(|e| follow(e).min(1.0 / length)).collect(),
+        }
+    }
+}
+
+/// Powers of two that rid the matrix of a step of all units: coordinates in rad or sizes of the
+/// mechanism, loads in those of the stiffness, states and their equations of size one.
+struct Scales {
+    /// (n_v + n_d)
+    rows: Vec<f64>,
+    /// (n_v + n_d)
+    columns: Vec<f64>,
+}
+
+impl Scales {
+    /// Takes them from a matrix whose first rows are loads along coordinates with these units, and
+    /// whose next `d` are equations of states.
+    fn of(a: &DMatrixViewMut<'_, f64>, units: &[f64], d: usize) -> Self {
+        let n = units.len();
+        let mut columns: Vec<f64> = units.iter().map(|&u| 1.0 / inverse_power(u)).collect();
+        let stiffness = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
+        let stiffness = stiffness.map(|(i, j)| (a[(i, j)] * columns[i] * columns[j]).abs());
+        let loads = inverse_power(stiffness.fold(0.0, f64::max));
+        let mut rows: Vec<f64> = columns.iter().map(|unit| unit * loads).collect();
+        for k in n..n + d {
+            let of_loads = rows[..n].iter().enumerate();
+            let largest = of_loads.map(|(i, row)| (a[(i, k)] * row).abs());
+            columns.push(inverse_power(largest.fold(0.0, f64::max)));
+        }
+        for k in n..n + d {
+            let entries = columns.iter().enumerate();
+            let largest = entries.map(|(j, column)| (a[(k, j)] * column).abs());
+            rows.push(inverse_power(largest.fold(0.0, f64::max)));
+        }
+        Self { rows, columns }
+    }
+
+    fn apply(&self, a: &mut DMatrixViewMut<'_, f64>) {
+        for (j, column) in self.columns.iter().enumerate() {
+            for (i, row) in self.rows.iter().enumerate() {
+                a[(i, j)] *= row * column;
+            }
         }
     }
 }
@@ -86,6 +128,7 @@ impl Settler<'_> {
         if self.lu.size() != size {
             self.lu = Lu::new(size);
         }
+        let units = self.units();
         // large matrices stand where those of the step before did
         let mut a = DMatrixViewMut::from_slice(self.lu.matrix_mut(), size, size);
         a.fill(0.0);
@@ -101,19 +144,29 @@ impl Settler<'_> {
             let mut follow = a.view_mut((n, 0), (d, n));
             follow -= drift / pace.length;
         }
-        for (i, row) in p.rows.gradient.row_iter().enumerate() {
+        let scales = Scales::of(&a, &units, d);
+        scales.apply(&mut a);
+        let mut gradient = p.rows.gradient.clone();
+        for (i, mut row) in gradient.row_iter_mut().enumerate() {
+            for (j, g) in row.iter_mut().enumerate() {
+                *g *= scales.columns[j];
+            }
+            row *= inverse_power(row.amax());
             for (j, g) in row.iter().enumerate() {
                 a[(j, n + d + i)] = -g;
                 a[(n + d + i, j)] = *g;
             }
         }
         self.asked.go_on()?;
+        for (x, factor) in rhs.iter_mut().zip(&scales.rows) {
+            *x *= factor;
+        }
         rhs.resize(size, 0.0);
         let mut upright = true;
         let mut is_symmetric = false;
         if downhill {
             let stiffness = a.view((0, 0), (n, n)).into_owned();
-            upright = goes_down(&stiffness, &p.rows.gradient);
+            upright = goes_down(&stiffness, &gradient);
             self.asked.go_on()?;
             is_symmetric = !upright && d == 0 && asymmetry(&stiffness) < 1e-3;
         }
@@ -124,6 +177,9 @@ impl Settler<'_> {
         }
         lu.solve(&mut rhs);
         rhs.truncate(n + d);
+        for (x, factor) in rhs.iter_mut().zip(&scales.columns) {
+            *x *= factor;
+        }
         let step = DVector::from_vec(rhs);
         step.iter().all(|x| x.is_finite()).then_some(step)
     }
@@ -131,7 +187,7 @@ impl Settler<'_> {
     /// Returns the size of a step in units of TLIMIT and ALIMIT; at most 1 is permitted.
     pub(super) fn excess(&self, step: &DVector<f64>) -> f64 {
         let scene = &self.system.scene;
-        let translation = self.settings.translation.max(scene.length);
+        let translation = self.settings.translation.unwrap_or(scene.length);
         let mut most = 0.0_f64;
         for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
             if let Some(v) = f.v {

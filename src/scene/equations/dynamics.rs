@@ -9,12 +9,21 @@ use crate::scene::configuration::Way;
 use crate::scene::layout::{replace, several};
 use crate::scene::loop_factor::LoopFactor;
 use crate::scene::solve::{
-    Factor, MassFactor, Solution, SymmetricFactor, accelerations, gram_diagonal, products,
+    Factor, MassFactor, Solution, SymmetricFactor, accelerations, gram, gram_diagonal,
 };
 use crate::scene::sweep::{self, LinkState, Wrench};
 use crate::scene::{LinkMotion, Source, programs};
 use crate::space::Vec3;
 use std::rc::Rc;
+
+/// `G W x`
+fn times<S: Scalar>(g: &[Vec<(usize, S)>], w: &[S], x: &[S]) -> Vec<S> {
+    let product = |row: &Vec<(usize, S)>| {
+        row.iter()
+            .fold(S::zero(), |sum, &(v, y)| sum + y * w[v] * x[v])
+    };
+    g.iter().map(product).collect()
+}
 
 impl<S: Scalar> Equations<'_, S> {
     /// Returns true if a row takes part (it does not where it depends on earlier ones).
@@ -186,7 +195,7 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// The diagonal of `G M⁻¹ Gᵀ` over the rows that take part, in their order: their pivots before
-    /// any is eliminated. In kinematics M is one, in statics its inverse holds the weights of
+    /// any is eliminated. In kinematics and statics the inverse of M holds the weights of
     /// projections.
     pub fn pivots(&self) -> Vec<S> {
         let rows = self.rows_in_order();
@@ -201,23 +210,24 @@ impl<S: Scalar> Equations<'_, S> {
                 let u: Vec<_> = u.collect();
                 gram_diagonal(&u, &factor.inverse_d())
             }
-            None if self.scene.mode == KINEMATIC => {
-                gram_diagonal(&g, &vec![S::one(); self.scene.layout.n_v])
-            }
-            None => {
-                let w = programs::weights(self.scene);
-                let w: Vec<S> = w.into_iter().map(S::constant).collect();
-                gram_diagonal(&g, &w)
-            }
+            None => gram_diagonal(&g, &self.weights()),
         }
+    }
+
+    /// The weights of projections, in place of inverse masses   (n_v)
+    fn weights(&self) -> Vec<S> {
+        let weights = programs::weights(self.scene).into_iter();
+        weights.map(S::constant).collect()
     }
 
     /// Accelerations (into `f`) and multipliers where the rows leave no freedom, so that masses may
     /// be zero.
     ///
     /// ```text
-    /// v̇ = Gᵀ (G Gᵀ)⁻¹ γ        λ = (G Gᵀ)⁻¹ G (M v̇ − f)
+    /// v̇ = W Gᵀ (G W Gᵀ)⁻¹ γ        λ = (G W Gᵀ)⁻¹ G W (M v̇ − f)
     /// ```
+    ///
+    /// with the weights W of projections, as turns and slides have different units.
     pub(super) fn determined(
         &self,
         wrenches: &[Wrench<S>],
@@ -225,26 +235,14 @@ impl<S: Scalar> Equations<'_, S> {
         gamma: &[S],
         f: &mut [S],
     ) -> Solution<S> {
-        let dot = |a: &[(usize, S)], b: &[(usize, S)]| {
-            let mut sum = S::zero();
-            for &(i, x) in a {
-                for &(j, y) in b {
-                    if i == j {
-                        sum += x * y;
-                    }
-                }
-            }
-            sum
-        };
-        let places = |r: usize| g[r].iter().map(|e| e.0);
-        let gram = products(g.len(), places, |r, c| dot(&g[r], &g[c]));
+        let w = self.weights();
         let usual_pivots = &self.configuration.elimination.usual_pivots;
-        let gram = SymmetricFactor::new(gram, usual_pivots);
+        let gram = SymmetricFactor::new(gram(g, &w), usual_pivots);
         let z = gram.solve(gamma.to_vec());
         f.fill(S::zero());
         for (row, &z) in g.iter().zip(&z) {
             for &(v, x) in row {
-                f[v] += x * z;
+                f[v] += x * w[v] * z;
             }
         }
         let links = sweep::outward(self.scene, &self.coordinates(f));
@@ -256,11 +254,7 @@ impl<S: Scalar> Equations<'_, S> {
             .filter(|f| f.v.is_some())
             .map(|f| f.component(&carried[f.link]))
             .collect();
-        let rhs = g
-            .iter()
-            .map(|row| row.iter().fold(S::zero(), |s, &(v, x)| s + x * missing[v]))
-            .collect();
-        gram.solution(rhs)
+        gram.solution(times(g, &w, &missing))
     }
 
     /// Multipliers that balance the loads `f` as well as rows can; accelerations (into `f`) are
@@ -270,28 +264,10 @@ impl<S: Scalar> Equations<'_, S> {
     /// λ = −(G W Gᵀ)⁻¹ G W f
     /// ```
     pub(super) fn supporting(&self, g: &[Vec<(usize, S)>], f: &mut [S]) -> Solution<S> {
-        let w = programs::weights(self.scene);
-        let places = |r: usize| g[r].iter().map(|e| e.0);
-        let gram = products(g.len(), places, |r, c| {
-            let mut sum = S::zero();
-            for &(i, x) in &g[r] {
-                for &(j, y) in &g[c] {
-                    if i == j {
-                        sum += (x * y).scale(w[i]);
-                    }
-                }
-            }
-            sum
-        });
-        let rhs = g
-            .iter()
-            .map(|row| {
-                row.iter()
-                    .fold(S::zero(), |s, &(v, x)| s - (x * f[v]).scale(w[v]))
-            })
-            .collect();
+        let w = self.weights();
+        let missing: Vec<S> = f.iter().map(|&f| -f).collect();
         f.fill(S::zero());
-        SymmetricFactor::new(gram, &[]).solution(rhs)
+        SymmetricFactor::new(gram(g, &w), &[]).solution(times(g, &w, &missing))
     }
 
     /// Loads along the free coordinates, gravity included, with the forces of the active rows at
