@@ -388,7 +388,7 @@ fn subtract_product((re, im): (&mut [f64], &mut [f64]), (cr, ci): (&[f64], &[f64
 }
 
 /// Returns `1/(re + i im)`, without overflow on the way.
-fn reciprocal(re: f64, im: f64) -> (f64, f64) {
+pub(super) fn reciprocal(re: f64, im: f64) -> (f64, f64) {
     if re.abs() >= im.abs() {
         let q = im / re;
         let d = re + im * q;

@@ -368,8 +368,9 @@ impl Way {
             a.add(k, k, DEPENDENT);
         }
         let mut factors = Factors::new(all, &a.places);
-        factors.factor(&a.values).ok()?;
-        factors.solve(&mut b);
+        let values: Vec<[f64; 1]> = a.values.iter().map(|&v| [v]).collect();
+        factors.factor(&values).ok()?;
+        factors.solve([&mut b]);
         Some(b)
     }
 }

@@ -13,6 +13,11 @@
 //! next correction is predicted to be small against the permitted error, and is given up as soon
 //! as Θ predicts that the permitted number of corrections will not suffice.
 //!
+//! *Rounding*: the rates of stiff forces are as exact as positions are rounded, times the stiffness.
+//! So an iteration that gets no further, each of its two last corrections below the permitted
+//! error, has ended: a shorter step has the same rounding. What it misses the estimate of the error
+//! sees, as it is made of the stages.
+//!
 //! *Hidden residuals*: where J is stiff, corrections are small however large the residual is. (A
 //! mass that a steep friction held: J is that of sticking, and the spring pulls already more than
 //! the friction can. The residual is the missing acceleration, and corrections are 10⁻⁶ of it.) So
@@ -61,7 +66,8 @@ pub(super) const KEEP_JACOBIAN_RATE: f64 = 0.02;
 /// Θ from which the iteration counts as divergent.
 const DIVERGENT_RATE: f64 = 0.99;
 
-/// Ratio of two successive residuals of an unknown above which J does not explain them.
+/// Ratio of two successive residuals of an unknown, or of two corrections, above which J does not
+/// explain them.
 pub(super) const UNEXPLAINED: f64 = 0.5;
 /// Ratio of a residual without J to its correction above which J hides it: what a smaller one hides
 /// of an iteration that has converged is no more than the permitted error.
@@ -314,19 +320,21 @@ impl Convergence {
                 f64::sqrt(ratio * progress.previous_ratio)
             };
             progress.previous_ratio = ratio;
-            if self.theta >= DIVERGENT_RATE {
-                return Some(Newton::Slow(0.5));
-            }
             // the correction that would be left after the last one permitted
             progress.rate_factor = self.theta / (1.0 - self.theta);
             let left = (self.allowed - 1 - iteration) as f64;
             let predicted =
                 progress.rate_factor * size * Scalar::powf(self.theta, left) / self.tolerance;
-            if predicted >= 1.0 && left > 0.0 {
+            let diverges = self.theta >= DIVERGENT_RATE;
+            if diverges || predicted >= 1.0 && left > 0.0 {
+                if ratio >= UNEXPLAINED && f64::max(size, progress.previous_size) <= 1.0 {
+                    return Some(Newton::Converged(iteration + 1));
+                }
                 let excess = predicted.clamp(1e-4, 20.0);
-                return Some(Newton::Slow(
-                    0.8 * Scalar::powf(excess, -1.0 / (4.0 + left)),
-                ));
+                return Some(Newton::Slow(match diverges {
+                    true => 0.5,
+                    false => 0.8 * Scalar::powf(excess, -1.0 / (4.0 + left)),
+                }));
             }
         }
         progress.previous_size = size.max(f64::MIN_POSITIVE);

@@ -42,6 +42,7 @@
 mod collocation;
 mod estimate;
 mod full;
+mod sparse;
 mod systems;
 
 use super::control::{self, Attempts, Rejection, Weights, worst, worst_index};

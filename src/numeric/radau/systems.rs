@@ -4,21 +4,11 @@
 //! (γ − J) x = b            (α + iβ − J)(x + iy) = b + ic                         (1)
 //! ```
 //!
-//! The systems are full (`full.rs`) unless the problem gives the pattern of its Jacobian. With a
-//! pattern the complex system is solved as a real one of twice the size, whose entries beyond `J`
-//! stand on and beside the diagonal only:
-//!
-//! ```text
-//! ⎡α − J   −β  ⎤ ⎡x⎤   ⎡b⎤
-//! ⎣  β    α − J⎦ ⎣y⎦ = ⎣c⎦        x and y of one unknown stand together         (2)
-//! ```
-//!
-//! Positions are eliminated first without being told apart (`q̇ = v`: their rows have two entries),
-//! as pivots are chosen where they cost least; what is left has the size of the velocities.
+//! The systems are full (`full.rs`) unless the problem gives the pattern of its Jacobian
+//! (`sparse.rs`). Both eliminate positions first.
 
 use super::full::Full;
-use crate::numeric::pattern::Pattern;
-use crate::numeric::sparse::Factors;
+use super::sparse::Sparse;
 use crate::numeric::{Failure, Ode};
 use std::sync::Arc;
 
@@ -37,68 +27,6 @@ pub(super) struct Systems {
 enum Kind {
     Full(Box<Full>),
     Sparse(Box<Sparse>),
-}
-
-#[derive(Clone, Debug)]
-struct Sparse {
-    pattern: Arc<Pattern>,
-    /// factors of the real system of (1)
-    real: Factors,
-    /// factors of (2)
-    complex: Factors,
-    /// entries of the matrix being factored   (2 · entries + 4 n)
-    values: Vec<f64>,
-    /// right-hand side of (2)   (2 n)
-    both: Vec<f64>,
-}
-
-impl Sparse {
-    /// Prepares both factorizations for a Jacobian of the given pattern.
-    fn new(pattern: Arc<Pattern>) -> Self {
-        let n = pattern.n_columns();
-        let diagonal = (0..n).map(|i| (i, i));
-        let real: Vec<_> = pattern.entries().chain(diagonal).collect();
-        let mut complex = Vec::with_capacity(2 * pattern.n_entries() + 4 * n);
-        for (i, j) in pattern.entries() {
-            complex.extend([(2 * i, 2 * j), (2 * i + 1, 2 * j + 1)]);
-        }
-        for i in 0..n {
-            let (x, y) = (2 * i, 2 * i + 1);
-            complex.extend([(x, x), (y, y), (x, y), (y, x)]);
-        }
-        Self {
-            real: Factors::new(n, &real),
-            complex: Factors::new(2 * n, &complex),
-            values: Vec::with_capacity(complex.len()),
-            both: vec![0.0; 2 * n],
-            pattern,
-        }
-    }
-
-    /// Factors both matrices.
-    fn factor(&mut self, jacobian: &[f64], gamma: f64, alpha: f64, beta: f64) -> Result<(), usize> {
-        let n = self.pattern.n_columns();
-        let values = &mut self.values;
-        values.clear();
-        values.extend(jacobian.iter().map(|j| -j));
-        values.resize(values.len() + n, gamma);
-        self.real.factor(values)?;
-        values.clear();
-        values.extend(jacobian.iter().flat_map(|j| [-j, -j]));
-        values.extend((0..n).flat_map(|_| [alpha, alpha, -beta, beta]));
-        self.complex.factor(values).map_err(|column| column / 2)
-    }
-
-    /// Solves the complex system as (2).
-    fn solve_complex(&mut self, re: &mut [f64], im: &mut [f64]) {
-        for ((b, re), im) in self.both.chunks_exact_mut(2).zip(&*re).zip(&*im) {
-            b.copy_from_slice(&[*re, *im]);
-        }
-        self.complex.solve(&mut self.both);
-        for ((x, re), im) in self.both.chunks_exact(2).zip(re).zip(im) {
-            (*re, *im) = (x[0], x[1]);
-        }
-    }
 }
 
 impl Systems {
@@ -205,7 +133,7 @@ impl Systems {
     /// The unknown that nothing determines.
     pub fn factor(&mut self, gamma: f64, alpha: f64, beta: f64) -> Result<(), usize> {
         match &mut self.kind {
-            Kind::Sparse(s) => s.factor(&self.jacobian, gamma, alpha, beta),
+            Kind::Sparse(s) => s.factor(&self.jacobian, gamma, [alpha, beta]),
             Kind::Full(full) => full.factor(&self.jacobian, gamma, alpha, beta),
         }
     }
@@ -214,7 +142,7 @@ impl Systems {
     pub fn solve(&mut self, x: &mut [f64]) {
         match &mut self.kind {
             Kind::Full(full) => full.solve(x),
-            Kind::Sparse(s) => s.real.solve(x),
+            Kind::Sparse(s) => s.solve(x),
         }
     }
 
