@@ -3,12 +3,13 @@
 //! The hand-written right-hand sides have minimal coordinates and are compiled with full optimization; they run under the same
 //! explicit method (DOP853) over the same requests. For each true error the least time that reaches it is taken, medians of runs that
 //! alternate; the ratio is what generality costs. Contacts are written by hand one branch after the other, from event to event on
-//! the interpolant. Then chains: the time of one evaluation against the number of links.
+//! the interpolant. Then chains: the time of one evaluation against the number of links. Then grids of bodies on bushings: the time of
+//! one step of RADAU5 against the number of freedoms.
 //!
 //! `cargo bench --bench solve`, or `cargo bench --bench solve -- four table`: only problems whose names contain a word; `table` shows every request.
 
 use cognate::analysis::session::script::obey;
-use cognate::analysis::session::{Options, Session};
+use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::model::Model;
@@ -711,6 +712,86 @@ fn chains(chosen: &dyn Fn(&str) -> bool) {
     }
 }
 
+/// The dataset of `n` by `n` bodies on bushings, those at two edges on ground, under their weight; `k`: stiffness in N/m.
+fn grid(n: usize, k: f64) -> String {
+    let mut text = "GRID\nUNITS/SYSTEM=MKS\nACCGRAV/KGRAV=-9.80665\nPART/1, GROUND\n".to_string();
+    let part = |i: usize, j: usize| 2 + i * n + j;
+    for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+        let (p, x, y) = (part(i, j), 0.5 * i as f64, 0.5 * j as f64);
+        text += &format!("PART/{p}, QG={x},{y},0, MASS=1, CM={p}0, IP=0.01,0.01,0.015\n");
+        text += &format!("MARKER/{p}0, PART={p}\n");
+        for (side, [x, y]) in [[0.25, 0.0], [-0.25, 0.0], [0.0, 0.25], [0.0, -0.25]]
+            .iter()
+            .enumerate()
+        {
+            text += &format!("MARKER/{p}{}, PART={p}, QP={x},{y},0\n", side + 1);
+        }
+    }
+    let mut bushings = Vec::new();
+    for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+        let p = part(i, j);
+        if i + 1 < n {
+            bushings.push((format!("{p}1"), format!("{}2", part(i + 1, j))));
+        }
+        if j + 1 < n {
+            bushings.push((format!("{p}3"), format!("{}4", part(i, j + 1))));
+        }
+        for (side, is_edge, x) in [(2, i == 0, -0.25), (1, i + 1 == n, 0.5 * n as f64 - 0.25)] {
+            if is_edge {
+                let marker = format!("{p}{}", side + 4);
+                text += &format!("MARKER/{marker}, PART=1, QP={x},{},0\n", 0.5 * j as f64);
+                bushings.push((format!("{p}{side}"), marker));
+            }
+        }
+    }
+    let three = |x: f64| format!("{x},{x},{x}");
+    let (kt, ct) = (three(1e-2 * k), three(1e-5 * k));
+    let (k, c) = (three(k), three(1e-3 * k));
+    for (b, (one, other)) in bushings.iter().enumerate() {
+        text += &format!(
+            "BUSHING/{}, I={one}, J={other}, K={k}, C={c}\n, KT={kt}, CT={ct}\n",
+            b + 1
+        );
+    }
+    text + "END\n"
+}
+
+/// Prints the time of a step of RADAU5 for grids of bodies, and the power of the freedoms that it grows with.
+fn grids(chosen: &dyn Fn(&str) -> bool) {
+    println!(
+        "\n{:18} {:>8} {:>8} {:>12} {:>8}",
+        "grid", "freedoms", "steps", "ms per step", "power"
+    );
+    for stiffness in [1e5, 1e8] {
+        let mut before: Option<(f64, f64)> = None;
+        for n in [5, 9, 13, 18] {
+            let problem = format!("grid_{n}_{stiffness:e}");
+            if !chosen(&problem) {
+                continue;
+            }
+            let model = Model::from_text(&grid(n, stiffness)).expect("a model");
+            let options = Options {
+                error: Some(1e-4),
+                method: Some("RADAU5".to_string()),
+                ..Options::default()
+            };
+            let mut session = Session::new(model, "grid", options);
+            session.run_to(Analysis::Dynamic, 1.0, 20).expect("a run");
+            let record = &session.run.record;
+            let ms = 1e3 * record.seconds.solve / record.counts.steps as f64;
+            let freedoms = (6 * n * n) as f64;
+            let power = before.map_or("-".into(), |(m, f)| {
+                format!("{:.2}", (ms / m).ln() / (freedoms / f).ln())
+            });
+            println!(
+                "{problem:18} {freedoms:>8} {:>8} {ms:>12.2} {power:>8}",
+                record.counts.steps
+            );
+            before = Some((ms, freedoms));
+        }
+    }
+}
+
 fn main() {
     let words: Vec<String> = std::env::args()
         .skip(1)
@@ -721,4 +802,5 @@ fn main() {
     let chosen = |name: &str| names.is_empty() || names.iter().any(|n| name.contains(n.as_str()));
     beside_hand_written(&chosen, table);
     chains(&chosen);
+    grids(&chosen);
 }

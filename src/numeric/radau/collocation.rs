@@ -13,10 +13,10 @@
 //! next correction is predicted to be small against the permitted error, and is given up as soon
 //! as Θ predicts that the permitted number of corrections will not suffice.
 //!
-//! *Rounding*: the rates of stiff forces are as exact as positions are rounded, times the stiffness.
-//! So an iteration that gets no further, each of its two last corrections below the permitted
-//! error, has ended: a shorter step has the same rounding. What it misses the estimate of the error
-//! sees, as it is made of the stages.
+//! *Rounding*: the rates of stiff forces are as exact as positions are rounded, times the
+//! stiffness. So an iteration that gets no further, each of its two last corrections below the
+//! permitted error, has ended: a shorter step has the same rounding. The estimate of the error sees
+//! the rest, as it is made of the stages.
 //!
 //! *Hidden residuals*: where J is stiff, corrections are small however large the residual is. (A
 //! mass that a steep friction held: J is that of sticking, and the spring pulls already more than

@@ -9,8 +9,8 @@
 //! x_S = D (b_S + J_SR x_R)                                                      (2)
 //! ```
 //!
-//! What (1) adds to J_RR couples no bodies that forces do not couple, so it has as many unknowns as
-//! there are velocities and no more fill than their accelerations would have.
+//! The terms that (1) adds to J_RR couple no bodies that forces do not couple: it has as many
+//! unknowns as there are velocities, and no more fill than damping would make.
 //!
 //! *Stiffness*: as in `full.rs`.
 //!

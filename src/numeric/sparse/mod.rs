@@ -1,5 +1,5 @@
-//! Linear equations with a fixed pattern, real or complex, solved again and again with other values:
-//! [`Factors`].
+//! Linear equations with a fixed pattern, real or complex, solved again and again with other
+//! values: [`Factors`].
 //!
 //! ```text
 //! small     up to DENSE_LIMIT real unknowns, at least half full: dense LU
