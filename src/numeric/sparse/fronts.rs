@@ -357,7 +357,8 @@ impl<const P: usize> Fronts<P> {
     /// The same by the vectors of any machine.
     #[inline(always)]
     fn factor_here(&mut self, values: &[[f64; P]], scale: &[f64]) -> bool {
-        (self.stack.clear(), self.left.clear());
+        self.stack.clear();
+        self.left.clear();
         self.factors.fill(0.0);
         let mut growth = 0.0;
         for s in 0..self.nodes.len() {
