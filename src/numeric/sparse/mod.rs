@@ -242,7 +242,7 @@ impl<const P: usize> Factors<P> {
 }
 
 /// Returns the power of two that brings `x` between 1 and 2, or one where there is none.
-fn inverse_power(x: f64) -> f64 {
+pub(crate) fn inverse_power(x: f64) -> f64 {
     let exponent = (x.to_bits() >> 52) & 0x7ff;
     if (64..1982).contains(&exponent) {
         f64::from_bits((2046 - exponent) << 52)
