@@ -163,6 +163,7 @@ impl Builder<'_> {
             acts_on: vec![i],
             about: Some(i),
             carries: None,
+            laws: &[],
             rows: first..first + 2,
             coordinate: None,
         });

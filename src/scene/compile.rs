@@ -216,6 +216,7 @@ impl<'m> Compiler<'m> {
                 acts_on: markers.iter().map(|m| m.0).collect(),
                 about: markers.map(|m| m.0),
                 carries: carrying[t],
+                laws: tie.kind.rows(),
                 rows: first..self.rows.len(),
                 coordinate: None,
             });

@@ -294,6 +294,7 @@ impl Builder<'_> {
             acts_on: receiver.into_iter().collect(),
             about,
             carries: None,
+            laws: &[],
             rows: first..first + 1,
             coordinate: None,
         });

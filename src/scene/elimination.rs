@@ -141,6 +141,13 @@ fn order_of_rows(places: &[Vec<usize>]) -> Option<Vec<usize>> {
     }
 }
 
+/// Returns an order of elimination in which little fills in: what has the fewest neighbours goes
+/// first.
+pub(super) fn fewest_neighbours_first(neighbours: Vec<BTreeSet<usize>>) -> Vec<usize> {
+    let found = eliminated(neighbours, true, f64::INFINITY);
+    found.map(|(order, _)| order).unwrap_or_default()
+}
+
 /// Returns the order in which rows are eliminated, those with the fewest neighbours first or in the
 /// order given, and the products that it takes; `None`: more than the limit.
 fn eliminated(

@@ -87,6 +87,7 @@ impl Builder<'_> {
                 acts_on,
                 about,
                 carries: None,
+                laws: &[],
                 rows: first..first + 1,
                 coordinate: None,
             });

@@ -366,6 +366,8 @@ pub struct ConstraintElement {
     pub about: Option<usize>,
     /// it carries a link: the last link of its chain, and whether it is passed from I to J
     pub carries: Option<(usize, bool)>,
+    /// the equations between its markers that a joint is, whether it carries a link or not
+    pub laws: &'static [Law],
     /// its rows, indices in [`Scene::rows`]
     pub rows: std::ops::Range<usize>,
     /// MOTION on a coordinate: which

@@ -152,6 +152,7 @@ impl Builder<'_> {
                 acts_on: markers.iter().map(|m| m.0).collect(),
                 about: markers.map(|m| m.0),
                 carries: None,
+                laws: &[],
                 rows,
                 coordinate,
             });

@@ -15,6 +15,7 @@ mod dynamics;
 mod energy;
 mod formulas;
 mod general;
+mod least_reactions;
 mod loops;
 mod measures;
 mod reactions;
@@ -29,7 +30,6 @@ pub use energy::Powers;
 pub(in crate::scene) use reactions::element_of;
 pub use rows::{RowValue, row_name};
 pub use turns::TurnedAngle;
-pub use undetermined_reactions::Share;
 pub use unsupported::{Lack, Unsupported};
 
 use super::Scene;

@@ -62,14 +62,12 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// The reaction of a constraint on its I marker (of a contact of curves about where it
-    /// touches): where rows depend on each other, its part of the smallest set.
+    /// touches): where rows depend on each other, its part of the least set.
     pub fn reaction(&self, c: usize) -> Action<S> {
-        let solved = self.solved();
-        let own = self.reaction_to(c, &solved.lambda, self.carried());
-        let shares = self.shares().iter();
-        shares.fold(own, |sum, share| {
-            sum.plus(&share.stress[c].times(share.factor))
-        })
+        match self.least().get(c) {
+            Some(Some(action)) => *action,
+            _ => self.reaction_to(c, &self.solved().lambda, self.carried()),
+        }
     }
 
     /// Returns what a constraint exerts on its I marker when rows have these multipliers and links
@@ -78,65 +76,31 @@ impl<S: Scalar> Equations<'_, S> {
         let scene = self.scene;
         let element = &scene.constraints[c];
         let mut sum = Action::zero();
-        let Some(about) = element.about else {
+        let Some(p_I) = self.given_about(element) else {
             return sum;
-        };
-        let p_I = match self.cam_of(element) {
-            Some(cam) => self.cam_place(cam),
-            None => self.marker(about).p_GM,
         };
         for r in element.rows.clone() {
             let l = lambda[r];
-            if l.is_known_zero() {
-                continue;
-            }
-            for (m, a) in &self.row(r).actions {
-                if element.acts_on.contains(m) {
-                    let force = a.force.times(l);
-                    let arm = self.marker(*m).p_GM - p_I;
-                    let torque = if *m == about && self.cam_of(element).is_none() {
-                        a.torque.times(l)
-                    } else {
-                        a.torque.times(l) + arm.cross(force)
-                    };
-                    sum = sum.plus(&Action { force, torque });
-                }
+            if !l.is_known_zero() {
+                sum = sum.plus(&self.exerted(element, &self.row(r).actions, l));
             }
         }
-        // on the carried link about p_I, ground axes
-        let at_i = |link: usize, w: &Wrench<S>| {
-            let X = &self.links()[link].X_GL;
-            let force = X.rotation.apply(w.force);
-            Action {
-                force,
-                torque: X.rotation.apply(w.torque) + (X.position - p_I).cross(force),
-            }
-        };
         let drive = |coordinate: usize| {
             let f = &scene.freedoms[coordinate];
-            let magnitude = f.component(&carried[f.link]);
-            let mut w = Wrench::zero();
-            let part = if f.turn { &mut w.torque } else { &mut w.force };
-            part.0[f.axis] = magnitude.scale(f.sign);
-            at_i(f.link, &w)
+            self.driving(coordinate, f.component(&carried[f.link]), p_I)
         };
         if let Some(coordinate) = element.coordinate {
-            let on_carried = drive(coordinate);
-            let backward = scene.freedoms[coordinate].sign < 0.0;
-            return if backward {
-                negative(&on_carried)
-            } else {
-                on_carried
-            };
+            return drive(coordinate);
         }
         if let Some((link, backward)) = element.carries {
-            let mut on_carried = at_i(link, &carried[link]);
+            let mut on_carried = self.on_link(link, &carried[link], p_I);
             // the part along a driven coordinate belongs to its MOTION
             for (k, coordinate) in scene.coordinates.iter().enumerate() {
                 if coordinate.joint.map(|j| ElementKind::Joint.id(j)) == Some(element.id)
                     && matches!(coordinate.source, Source::Driven(_))
                 {
-                    on_carried = on_carried.plus(&negative(&drive(k)));
+                    let drive = drive(k);
+                    on_carried = on_carried.plus(&if backward { drive } else { negative(&drive) });
                 }
             }
             sum = sum.plus(&if backward {
@@ -146,6 +110,64 @@ impl<S: Scalar> Equations<'_, S> {
             });
         }
         sum
+    }
+
+    /// Where the reaction of a constraint is given about; `None`: it has none that can be asked
+    /// for.
+    fn given_about(&self, element: &ConstraintElement) -> Option<Vec3<S>> {
+        let about = element.about?;
+        Some(match self.cam_of(element) {
+            Some(cam) => self.cam_place(cam),
+            None => self.marker(about).p_GM,
+        })
+    }
+
+    /// Returns what a constraint exerts on its I marker with `l` times these actions on markers.
+    pub(super) fn exerted(
+        &self,
+        element: &ConstraintElement,
+        actions: &[(usize, Action<S>)],
+        l: S,
+    ) -> Action<S> {
+        let mut sum = Action::zero();
+        let Some(p_I) = self.given_about(element) else {
+            return sum;
+        };
+        let is_at_i = |m: usize| element.about == Some(m) && self.cam_of(element).is_none();
+        for (m, a) in actions.iter().filter(|(m, _)| element.acts_on.contains(m)) {
+            let force = a.force.times(l);
+            let torque = if is_at_i(*m) {
+                a.torque.times(l)
+            } else {
+                a.torque.times(l) + (self.marker(*m).p_GM - p_I).cross(force)
+            };
+            sum = sum.plus(&Action { force, torque });
+        }
+        sum
+    }
+
+    /// Returns a wrench on a link as an action about a point.
+    pub(super) fn on_link(&self, link: usize, w: &Wrench<S>, about: Vec3<S>) -> Action<S> {
+        let X = &self.links()[link].X_GL;
+        let force = X.rotation.apply(w.force);
+        Action {
+            force,
+            torque: X.rotation.apply(w.torque) + (X.position - about).cross(force),
+        }
+    }
+
+    /// Returns what the drive of a coordinate exerts on the I marker of its joint, about a point.
+    pub(super) fn driving(&self, coordinate: usize, magnitude: S, about: Vec3<S>) -> Action<S> {
+        let f = &self.scene.freedoms[coordinate];
+        let mut w = Wrench::zero();
+        let part = if f.turn { &mut w.torque } else { &mut w.force };
+        part.0[f.axis] = magnitude.scale(f.sign);
+        let on_carried = self.on_link(f.link, &w, about);
+        if f.sign < 0.0 {
+            negative(&on_carried)
+        } else {
+            on_carried
+        }
     }
 
     /// NFORCE(id, at, comp, rm): the action on one of its markers, I or J.

@@ -62,7 +62,7 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// Returns a law between markers I and J over duals along the twists of I (0–5: rotation,
     /// translation) and J (6–11).
-    fn along_twists(
+    pub(super) fn along_twists(
         &self,
         law: Law,
         (i, j): (usize, usize),

@@ -1,7 +1,8 @@
 //! Results kept within one instant: each thing is computed when it is first asked for.
 
 use super::formulas::Opened;
-use super::{RowValue, Share, Solved, Unsupported};
+use super::{RowValue, Solved, Unsupported};
+use crate::physics::action::Action;
 use crate::scalar::Jet;
 use crate::scene::Scene;
 use crate::scene::loops::Key;
@@ -71,8 +72,8 @@ pub(super) struct Scratch<S> {
     pub carried: OnceCell<Vec<Wrench<S>>>,
     /// true while loads are found, on which accelerations depend
     pub solving: Cell<bool>,
-    /// states of stress that dependent rows permit
-    pub shares: OnceCell<Vec<Share<S>>>,
+    /// reactions of the least set where dependent rows leave them open   (n_constraints or 0)
+    pub least: OnceCell<Vec<Option<Action<S>>>>,
     /// unknowns of loops that were asked for too early, in the order in which they were
     pub discovered: RefCell<Vec<Key>>,
     /// the same, to be found
@@ -97,7 +98,7 @@ impl<S: Copy> Scratch<S> {
             accelerated: OnceCell::new(),
             carried: OnceCell::new(),
             solving: Cell::new(false),
-            shares: OnceCell::new(),
+            least: OnceCell::new(),
             discovered: RefCell::default(),
             early: RefCell::default(),
             rates_open: RefCell::default(),
