@@ -20,6 +20,7 @@ mod kinds_of_loops;
 mod large;
 mod laws;
 mod leaps;
+mod least_reactions;
 mod left_out;
 mod massless;
 mod mechanisms;
