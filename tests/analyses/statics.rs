@@ -173,7 +173,7 @@ fn what_falls_forever_is_named_with_its_direction() {
     .replace("ZGRAV", "KGRAV");
     let why = cannot_rest(&text);
     assert!(
-        why.contains("force of 1.962")
+        why.contains("force of 19.62 on")
             && why.contains("PART/2")
             && why.contains("(0.000000, 0.000000, -1.000000)"),
         "{why}"

@@ -264,27 +264,41 @@ impl Mechanisms {
     /// Brings each to rest, which nothing of the others has a say in, and the whole with them.
     ///
     /// # Errors
-    /// The first that is not balanced.
+    /// The first that is not balanced, of those that nothing carries if there are such.
     pub(super) fn settle(
         &mut self,
         system: &mut System,
         mut settle: impl FnMut(&mut System) -> Result<Equilibrium, NoEquilibrium>,
     ) -> Result<Equilibrium, NoEquilibrium> {
         let mut all: Option<Equilibrium> = None;
+        let mut failed: Option<Imbalance> = None;
         for mechanism in &mut self.0 {
             let found = settle(&mut mechanism.system);
             for &[own, whole] in &mechanism.places {
                 system.numbers[whole] = mechanism.system.numbers[own];
             }
-            let found = found?;
-            all = Some(all.map_or(found, |all| all.beside(&found)));
+            match found {
+                Ok(found) => all = Some(all.map_or(found, |all| all.beside(&found))),
+                Err(NoEquilibrium::Interrupted) => return Err(NoEquilibrium::Interrupted),
+                Err(NoEquilibrium::Unbalanced(why)) => {
+                    let is_worse = |other: &Imbalance| why.is_uncarried() && !other.is_uncarried();
+                    if failed.as_ref().is_none_or(is_worse) {
+                        failed = Some(why);
+                    }
+                }
+            }
         }
         let (l, t) = (system.scene.layout, system.numbers[Layout::TIME]);
         let y = system.numbers[l.y()].to_vec();
         system.count_turns(t, &y);
         let row = system.row(t, &y);
         system.numbers.copy_from_slice(&row);
-        all.ok_or(NoEquilibrium::Unbalanced(Imbalance::Unknown))
+        match (all, failed) {
+            (Some(all), None) => Ok(all),
+            (_, failed) => Err(NoEquilibrium::Unbalanced(
+                failed.unwrap_or(Imbalance::Unknown),
+            )),
+        }
     }
 
     /// Integrates all through some times, on some threads.

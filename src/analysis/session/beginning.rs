@@ -15,8 +15,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-/// Part of a turn by which an angle may exceed half a turn and still be the same without turns.
-const ROUNDING_OF_A_TURN: f64 = 1e-9;
+/// Part of a turn by which rounding puts half a turn beyond itself.
+pub(super) const ROUNDING_OF_A_TURN: f64 = 1e-9;
 
 /// A model that begins where a simulation has led.
 #[derive(Clone, Debug)]

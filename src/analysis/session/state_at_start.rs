@@ -1,6 +1,7 @@
 //! A state on its way to be consistent: from the dataset, or from the last simulation, onto the
 //! rows.
 
+use super::beginning::ROUNDING_OF_A_TURN;
 use super::carried::Carried;
 use crate::analysis::look::Look;
 use crate::analysis::start::assemble::{self, Assembly};
@@ -16,9 +17,6 @@ use crate::scene::{CountedAngle, Scene};
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
-
-/// Part of a turn by which rounding may put half a turn below minus half a turn.
-const ROUNDING_OF_A_TURN: f64 = 1e-12;
 
 /// A state on its way to be consistent.
 pub(super) struct Start {

@@ -7,15 +7,14 @@ use super::{NoEquilibrium, Settler};
 use crate::scene::equations::Equations;
 use nalgebra::{DMatrix, DVector};
 
-/// Part of the loads below which what is left of them is rounding.
+/// Part of the loads below which what is left of them is rounding, as a shorter way is than this,
+/// in rad or in sizes of the mechanism.
 const ROUNDING: f64 = 1e-13;
 /// Part of the loads below which an iteration that no longer improves has arrived.
 pub(super) const STAGNANT: f64 = 1e-8;
 /// Factor by which steps may become longer while something soft between what is stiff still goes:
 /// then the matrix keeps a digit.
 const SOFT_FACTOR: f64 = 1e3;
-/// Way of the shortest step, in rad or in sizes of the mechanism: shorter ones are rounding.
-const SHORTEST: f64 = 1e-14;
 /// Samples of what rounding could do.
 const NOISE_SAMPLES: usize = 4;
 /// Steps of the descent at most, whatever MAXIT says of Newton.
@@ -279,7 +278,7 @@ impl Settler<'_> {
                 return Err(NoStep::Unforeseen);
             }
             length *= 0.25;
-            if length * fastest < SHORTEST {
+            if length * fastest < ROUNDING {
                 return Err(NoStep::Unforeseen);
             }
         }

@@ -62,7 +62,7 @@ const PUSH: f64 = 0.01;
 pub struct Settings {
     /// ERROR: largest rate of a state that may remain; `None`: what rounding leaves
     pub error: Option<f64>,
-    /// TLIMIT: largest translation in one iteration; `None`: the size of the mechanism
+    /// TLIMIT: largest translation in one iteration; `None`: twenty sizes of the mechanism
     pub translation: Option<f64>,
     /// ALIMIT: largest rotation in one iteration   (rad)
     pub angle: f64,

@@ -45,6 +45,17 @@ pub enum Imbalance {
 }
 
 impl Imbalance {
+    /// Returns whether it is a load that stays however far anything gives way.
+    pub(in crate::analysis) fn is_uncarried(&self) -> bool {
+        matches!(
+            self,
+            Imbalance::Load {
+                uncarried: true,
+                ..
+            }
+        )
+    }
+
     /// Name of the coordinate or equation that is not at rest; empty: none is to blame.
     pub fn name(&self) -> &str {
         match self {

@@ -15,6 +15,9 @@ use nalgebra::{DMatrix, DMatrixViewMut, DVector};
 
 /// Iterations of one implicit step.
 const MAX_CORRECTIONS: usize = 8;
+/// Largest translation in a step where TLIMIT says nothing, in sizes of the mechanism: what 20 m,
+/// which is usual, are to one of a metre.
+const USUAL_TRANSLATION: f64 = 20.0;
 /// Part of its own rate by which a state that follows lags behind.
 const STATE_LAG: f64 = 1e-6;
 
@@ -187,7 +190,8 @@ impl Settler<'_> {
     /// Returns the size of a step in units of TLIMIT and ALIMIT; at most 1 is permitted.
     pub(super) fn excess(&self, step: &DVector<f64>) -> f64 {
         let scene = &self.system.scene;
-        let translation = self.settings.translation.unwrap_or(scene.length);
+        let translation = self.settings.translation;
+        let translation = translation.unwrap_or(USUAL_TRANSLATION * scene.length);
         let mut most = 0.0_f64;
         for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
             if let Some(v) = f.v {
