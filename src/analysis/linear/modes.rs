@@ -71,7 +71,7 @@ pub(super) fn modes(
     let motion = PartMotion::of(system, model, small);
     let names = system.scene.unknown_names();
     let mut found: Vec<Mode> = Vec::with_capacity(values.len());
-    let mut vectors: Vec<(Complex<f64>, &Part, DVector<Complex<f64>>)> = Vec::new();
+    let mut vectors: Vec<(Complex<f64>, &Part, Shape)> = Vec::new();
     for (k, &(value, part)) in values.iter().enumerate() {
         let mut mode = Mode {
             re: value.re,
@@ -80,7 +80,7 @@ pub(super) fn modes(
             states: Vec::new(),
         };
         if (first..=last).contains(&(k + 1)) {
-            let near: Vec<&DVector<Complex<f64>>> = vectors
+            let near: Vec<&Shape> = vectors
                 .iter()
                 .filter(|(v, other, _)| {
                     let near = 1e-8 * value.norm().max(1e-6 * part.norm);
@@ -101,6 +101,9 @@ pub(super) fn modes(
     }
     Ok(found)
 }
+
+/// An eigenvector of a part, of length one.
+type Shape = DVector<Complex<f64>>;
 
 /// A part of the states that nothing couples to the others, with its block of the matrix.
 pub(super) struct Part {
@@ -190,8 +193,8 @@ fn eigenvector(
     a: &DMatrix<f64>,
     value: Complex<f64>,
     norm: f64,
-    before: &[&DVector<Complex<f64>>],
-) -> Option<DVector<Complex<f64>>> {
+    before: &[&Shape],
+) -> Option<Shape> {
     let n = a.nrows();
     let shift = value + Complex::new(1e-13 * norm.min(value.norm() + 1e-3 * norm), 0.0);
     let mut shifted = a.map(|x| Complex::new(x, 0.0));
