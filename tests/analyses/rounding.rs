@@ -239,3 +239,20 @@ fn runs_end_at_rest_whatever_their_duration() {
         }
     }
 }
+
+/// Corrections of stiff forces get no smaller than the rounding of positions makes them: steps grow in number as the order says,
+/// and not as rounding does. (A step more than 2.5 times for each hundredth of the request; it was 5.7.)
+#[test]
+fn steps_of_a_stiff_bushing_are_not_shortened_for_the_rounding_of_its_force() {
+    let path = format!(
+        "{}/tests/data/references/stiff_bushing.adm",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let model = cognate::model::Model::read(&path).unwrap_or_else(|e| panic!("{e}"));
+    let steps = [1e-8, 1e-10].map(|error| {
+        let mut s = begin(model.clone(), "bushing", options_by(&[], "RADAU5", error));
+        go(&mut s, Analysis::Dynamic, 1.0, 10);
+        s.run.record.counts.steps + s.run.record.counts.rejected_steps
+    });
+    assert!(steps[1] < 4 * steps[0], "{steps:?}");
+}

@@ -496,3 +496,21 @@ fn what_is_at_rest_stays_so_in_any_units() {
         );
     }
 }
+
+/// A weight that has to sink by 49 on its spring, in steps of at most TLIMIT: where that is too short for all steps there are, it
+/// is named.
+#[test]
+fn a_limit_of_steps_is_obeyed_and_named_where_it_ends_the_search() {
+    let text = |limit: f64| {
+        format!(
+            "{GROUND}PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=2, J=1\nACCGRAV/KGRAV=-9.81\n\
+             SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=-0.2*DZ(2,1)\nEQUILIBRIUM/TLIMIT={limit}\nEND\n"
+        )
+    };
+    let mut s = session(&text(0.5), &["DZ(2,1)"]);
+    rest(&mut s);
+    assert!((last(&s, "DZ(2,1)") + 49.05).abs() < 1e-9);
+    assert!(s.run.record.counts.steps >= 98, "{:?}", s.run.record.counts);
+    let why = cannot_rest(&text(1e-3));
+    assert!(why.contains("TLIMIT"), "{why}");
+}

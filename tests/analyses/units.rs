@@ -84,6 +84,20 @@ fn bars(corners: &[[f64; 2]]) -> String {
     (2..).zip(corners.windows(2)).map(bar).collect()
 }
 
+fn kind(
+    name: &'static str,
+    text: String,
+    columns: &'static [(&'static str, char)],
+    ways: &'static str,
+) -> Kind {
+    Kind {
+        name,
+        text,
+        columns,
+        ways,
+    }
+}
+
 fn linkages() -> Vec<Kind> {
     let gravity = "ACCGRAV/JGRAV=<-9.81 G>\n";
     let four_bar = marker(2, 1, [3.0, 0.0, 0.0])
@@ -115,12 +129,6 @@ fn linkages() -> Vec<Kind> {
            JOINT/1, REVOLUTE, I=21, J=1\nJOINT/2, SPHERICAL, I=31, J=22\nJOINT/3, SPHERICAL, I=32, J=42\nJOINT/4, REVOLUTE, I=43, J=2\n\
            ACCGRAV/JGRAV=<-9.81 G>, KGRAV=<2 G>\n\
            SFORCE/1, I=20, J=1, ROTATION, FUNCTION=-<0.3 D>*WZ(20,1)-<0.5 Q>*AZ(21,1)\n";
-    let kind = |name, text, columns, ways| Kind {
-        name,
-        text,
-        columns,
-        ways,
-    };
     vec![
         kind(
             "four-bar",
@@ -193,12 +201,6 @@ fn carried() -> Vec<Kind> {
          CONTACT/1, IGEOM=2, JGEOM=1, IMPACT, STIFFNESS=<1e3 K>, DAMPING=<20 C>, EXPONENT=1, DMAX=<0.01 L>, COULOMB_FRICTION=ON, MU_STATIC=0.3, \
          MU_DYNAMIC=0.2, STICTION_TRANSITION_VELOCITY=<0.01 V>, FRICTION_TRANSITION_VELOCITY=<0.1 V>\nACCGRAV/JGRAV=<-9.81 G>\n",
     );
-    let kind = |name, text, columns, ways| Kind {
-        name,
-        text,
-        columns,
-        ways,
-    };
     vec![
         kind(
             "bushings",

@@ -11,26 +11,29 @@ use cognate::space::{Frame, Mat3, Vec3, rotation};
 use std::sync::Arc;
 
 /// Numbers in (−1, 1), the same on every run.
-struct Draw(u64);
+pub struct Draw(pub u64);
 impl Draw {
-    fn next(&mut self) -> f64 {
+    pub fn next(&mut self) -> f64 {
         self.0 = self
             .0
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
-    fn vector(&mut self) -> Vec3<f64> {
+    pub fn vector(&mut self) -> Vec3<f64> {
         Vec3([self.next(), self.next(), self.next()])
     }
     fn rotation(&mut self) -> Mat3<f64> {
         rotation::from_313(3.0 * self.next(), 1.2 * self.next(), 3.0 * self.next())
     }
-    fn frame(&mut self) -> Frame<f64> {
+    pub fn frame(&mut self) -> Frame<f64> {
         Frame {
             rotation: self.rotation(),
             position: self.vector(),
         }
+    }
+    pub fn one_of<'a, T>(&mut self, all: &'a [T]) -> &'a T {
+        &all[(self.next().abs() * all.len() as f64) as usize % all.len()]
     }
 }
 

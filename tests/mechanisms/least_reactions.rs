@@ -3,6 +3,8 @@
 
 use crate::running::whole;
 
+use crate::constraints::Draw;
+
 use cognate::analysis::start::{assemble, velocities};
 use cognate::model::ElementId;
 use cognate::numeric::rank::{Dependence, Rank};
@@ -20,31 +22,6 @@ use std::sync::Arc;
 const AGREE: f64 = 1e-7;
 /// Part of a row outside the others below which it depends on them: rounding.
 const DEPENDENT: f64 = 1e-9;
-
-/// Numbers in (−1, 1), the same on every run.
-struct Draw(u64);
-impl Draw {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-    fn one_of<'a, T>(&mut self, all: &'a [T]) -> &'a T {
-        &all[(self.next().abs() * all.len() as f64) as usize % all.len()]
-    }
-    fn vector(&mut self) -> Vec3<f64> {
-        Vec3([self.next(), self.next(), self.next()])
-    }
-    fn frame(&mut self) -> Frame<f64> {
-        let angles = [3.0 * self.next(), 1.2 * self.next(), 3.0 * self.next()];
-        Frame {
-            rotation: rotation::from_313(angles[0], angles[1], angles[2]),
-            position: self.vector(),
-        }
-    }
-}
 
 /// Points of a statement that place a frame.
 fn placed(frame: &Frame<f64>, [point, z, x]: [&str; 3]) -> String {

@@ -72,6 +72,7 @@ impl Session {
             && scene.sensors.is_empty()
             && l.n_external == 0
             && l.n_downstream == 0
+            // states by themselves may be one, too
             && scene.n_mechanisms() + usize::from(l.n_x > 0) > 1
     }
 

@@ -43,6 +43,8 @@ struct Course {
     best: f64,
     /// size of the last step before it was shortened, where it was as long as it may be
     wanted: f64,
+    /// whether the last step was shortened because of TLIMIT or ALIMIT
+    limited: bool,
 }
 
 impl Course {
@@ -55,6 +57,7 @@ impl Course {
             idle: 0,
             best: f64::INFINITY,
             wanted: f64::INFINITY,
+            limited: false,
         }
     }
 
@@ -85,6 +88,7 @@ impl Course {
         let arrived =
             small && full && next.left[0] > 0.5 * p.left[0] && step.wanted > 0.5 * self.wanted;
         self.wanted = if full { step.wanted } else { f64::INFINITY };
+        self.limited = step.shortened;
         let growth = if step.shortened {
             1.0
         } else if step.quality < 0.1 {
@@ -170,7 +174,7 @@ impl Settler<'_> {
                 return Ok(());
             }
             if *iterations >= budget || course.falling > MAX_FALLING {
-                return self.unless_rounding(p, jacobian, &left);
+                return self.unless_rounding(p, jacobian, &left, course.limited);
             }
             // a step
             let Some(longest) = self.permitted(p, jacobian, &left, scales) else {
@@ -181,7 +185,9 @@ impl Settler<'_> {
                 Ok(step) => step,
                 Err(NoStep::Arrived) => return Ok(()),
                 Err(NoStep::Unforeseen) if left.small || self.converged(p, &left) => return Ok(()),
-                Err(NoStep::Unforeseen) => return self.unless_rounding(p, jacobian, &left),
+                Err(NoStep::Unforeseen) => {
+                    return self.unless_rounding(p, jacobian, &left, false);
+                }
             };
             // take it
             let arrived = course.advance(p, &step, left.small, longest);
@@ -211,17 +217,18 @@ impl Settler<'_> {
         }
     }
 
-    /// Ends the descent where it leads no further.
+    /// Ends the descent where it leads no further; `limited`: because of TLIMIT or ALIMIT.
     fn unless_rounding(
         &mut self,
         p: &Point,
         jacobian: &DMatrix<f64>,
         left: &Left,
+        limited: bool,
     ) -> Result<(), NoEquilibrium> {
         if self.is_rounding(p, jacobian, left) {
             return Ok(());
         }
-        Err(self.unbalanced(p))
+        Err(self.unbalanced(p, limited))
     }
 
     /// Returns how long a step may be; `None`: no step can make it better.

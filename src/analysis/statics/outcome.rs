@@ -39,6 +39,8 @@ pub enum Imbalance {
         coordinate: String,
         /// it stays however far anything gives way
         uncarried: bool,
+        /// TLIMIT or ALIMIT have kept the search from going farther
+        limited: bool,
     },
     /// the search ended for no reason that could be found
     Unknown,
@@ -83,18 +85,22 @@ impl fmt::Display for Imbalance {
                 way,
                 coordinate,
                 uncarried,
+                limited,
             } => {
                 let what = if *torque { "torque" } else { "force" };
                 let round = |x: f64| if x.abs() < 5e-7 { 0.0 } else { x };
                 let [x, y, z] = way.0.map(round);
-                let nothing = if *uncarried {
-                    "; nothing carries it"
-                } else {
-                    ""
+                let why = match (uncarried, limited) {
+                    (true, _) => "; nothing carries it",
+                    (false, true) => {
+                        "; the last step was still as long as TLIMIT and ALIMIT of EQUILIBRIUM \
+                         permit: larger ones lead farther"
+                    }
+                    (false, false) => "",
                 };
                 write!(
                     f,
-                    "no equilibrium: a {what} of {} on {part} remains along ({x:.6}, {y:.6}, {z:.6}), {coordinate}{nothing}",
+                    "no equilibrium: a {what} of {} on {part} remains along ({x:.6}, {y:.6}, {z:.6}), {coordinate}{why}",
                     short(*size)
                 )
             }
@@ -130,8 +136,8 @@ impl Settler<'_> {
     }
 
     /// Names what is not balanced: the largest of the loads that nothing carries, else the
-    /// coordinate that would be accelerated most.
-    pub(super) fn unbalanced(&mut self, p: &Point) -> NoEquilibrium {
+    /// coordinate that would be accelerated most; `limited`: by TLIMIT or ALIMIT.
+    pub(super) fn unbalanced(&mut self, p: &Point, limited: bool) -> NoEquilibrium {
         let uncarried = self.carried_by_nothing(p);
         let scene = &self.system.scene;
         let rate = p.metric.solve(&p.force);
@@ -179,6 +185,7 @@ impl Settler<'_> {
             way,
             coordinate: c.id.to_string(),
             uncarried: uncarried.is_some(),
+            limited,
         })
     }
 }

@@ -14,9 +14,12 @@
 //! as Θ predicts that the permitted number of corrections will not suffice.
 //!
 //! *Rounding*: the rates of stiff forces are as exact as positions are rounded, times the
-//! stiffness. So an iteration that gets no further, each of its two last corrections below the
-//! permitted error, has ended: a shorter step has the same rounding. The estimate of the error sees
-//! the rest, as it is made of the stages.
+//! stiffness. An iteration that would be given up has ended where its corrections are no more than
+//! that makes of them, and are permitted errors: a shorter step has the same rounding.
+//!
+//! ```text
+//! ρ = ε |J| |y|        ‖Σ|T⁻¹| (γ − J)⁻¹ ρ‖                                           (4)
+//! ```
 //!
 //! *Hidden residuals*: where J is stiff, corrections are small however large the residual is. (A
 //! mass that a steep friction held: J is that of sticking, and the spring pulls already more than
@@ -66,8 +69,7 @@ pub(super) const KEEP_JACOBIAN_RATE: f64 = 0.02;
 /// Θ from which the iteration counts as divergent.
 const DIVERGENT_RATE: f64 = 0.99;
 
-/// Ratio of two successive residuals of an unknown, or of two corrections, above which J does not
-/// explain them.
+/// Ratio of two successive residuals of an unknown above which J does not explain them.
 pub(super) const UNEXPLAINED: f64 = 0.5;
 /// Ratio of a residual without J to its correction above which J hides it: what a smaller one hides
 /// of an iteration that has converged is no more than the permitted error.
@@ -244,6 +246,20 @@ impl Stages {
         first.copy_from_slice(last);
     }
 
+    /// Returns how large corrections may be that are made of rounding alone (4), against the
+    /// permitted errors. `rounding`: as for [`Stages::correct`].
+    fn rounding(&mut self, systems: &mut Systems, (scale, rounding): (&[f64], f64)) -> f64 {
+        let (magnitudes, rates) = (&mut self.argument, &mut self.residual[0]);
+        for (m, scale) in magnitudes.iter_mut().zip(scale) {
+            *m = f64::EPSILON * rounding / (ROUNDING * scale);
+        }
+        systems.times_sizes(magnitudes, rates);
+        systems.solve(rates);
+        let sizes = rates.iter().zip(scale).map(|(x, scale)| (x * scale).abs());
+        let all: f64 = TI.iter().flatten().map(|x| x.abs()).sum();
+        all * sizes.fold(0.0, f64::max)
+    }
+
     /// Adds the corrections in `g` to the stages; `h`: length of the step, in s; `rounding`: size
     /// of a correction that may be rounding, scaled.
     fn correct(&mut self, scale: &[f64], (h, rounding): (f64, f64)) -> Result<Correction, Newton> {
@@ -327,9 +343,6 @@ impl Convergence {
                 progress.rate_factor * size * Scalar::powf(self.theta, left) / self.tolerance;
             let diverges = self.theta >= DIVERGENT_RATE;
             if diverges || predicted >= 1.0 && left > 0.0 {
-                if ratio >= UNEXPLAINED && f64::max(size, progress.previous_size) <= 1.0 {
-                    return Some(Newton::Converged(iteration + 1));
-                }
                 let excess = predicted.clamp(1e-4, 20.0);
                 return Some(Newton::Slow(match diverges {
                     true => 0.5,
@@ -385,6 +398,13 @@ pub(super) fn solve_collocation_system<P: Ode + ?Sized>(
             Some(Newton::Converged(1)) if correction.is_hidden => (),
             Some(Newton::Converged(2..)) if correction.is_unexplained => {
                 return Newton::Slow(0.5);
+            }
+            Some(Newton::Slow(factor)) => {
+                let (size, rounding) = (correction.size, (scale, rounding));
+                return match size <= 1.0 && size <= stages.rounding(systems, rounding) {
+                    true => Newton::Converged(iteration + 1),
+                    false => Newton::Slow(factor),
+                };
             }
             Some(end) => return end,
             None => (),

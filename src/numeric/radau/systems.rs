@@ -138,6 +138,22 @@ impl Systems {
         }
     }
 
+    /// `to ← |J| x`, entry by entry
+    pub fn times_sizes(&self, x: &[f64], to: &mut [f64]) {
+        to.fill(0.0);
+        let mut add = |(i, j): (usize, usize), entry: &f64| to[i] += entry.abs() * x[j];
+        match &self.kind {
+            Kind::Full(_) => {
+                let columns = self.jacobian.chunks_exact(self.n.max(1)).enumerate();
+                columns.for_each(|(j, c)| c.iter().enumerate().for_each(|(i, e)| add((i, j), e)));
+            }
+            Kind::Sparse(s) => {
+                let entries = s.pattern.entries().zip(&self.jacobian);
+                entries.for_each(|(place, e)| add(place, e));
+            }
+        }
+    }
+
     /// `x ← (γ − J)⁻¹ x`
     pub fn solve(&mut self, x: &mut [f64]) {
         match &mut self.kind {
