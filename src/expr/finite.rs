@@ -13,6 +13,7 @@
 //! counts as finite unless an operand is at risk.
 
 use super::ast::{Ast, BinaryOp, Callee, Node, NodeIx};
+use super::compile::literal_value;
 use super::functions::Function;
 use super::interpolation::Interpolation;
 
@@ -87,12 +88,15 @@ fn of_call(ast: &Ast, callee: Callee, args: &[NodeIx], worst: Risk) -> Risk {
             Handling::Passes => worst,
             Handling::PassesWithDomain => worst.max(Risk::NotANumber),
             Handling::LosesInfinity | Handling::Loses => {
-                // parameters that are literals were checked when the text was read; the point
-                // (0, 0) has no angle
-                let mut parameters = args.iter().skip(1).map(|&a| literal(ast, a));
+                // literals outside the domain are refused where the text is read, but for branches of
+                // an IF, which need not be reached
+                let known = |&a: &NodeIx| literal(ast, a).unwrap_or(f64::NAN);
+                let known: Vec<f64> = args.iter().map(known).collect();
+                let parameters = known.get(1..).unwrap_or_default();
                 let fixed = match f {
-                    Function::Atan2 => parameters.any(|x| x.is_some_and(|x| x != 0.0)),
-                    _ => parameters.all(|x| x.is_some()),
+                    // the point (0, 0) has no angle, and a division by 0 no remainder
+                    Function::Atan2 | Function::Mod => parameters.iter().any(|x| x.abs() > 0.0),
+                    _ => !parameters.iter().any(|x| x.is_nan()) && f.violation(&known).is_none(),
                 };
                 let own = if fixed { Risk::None } else { Risk::NotANumber };
                 own.max(worst.min(Risk::NotANumber))
@@ -213,12 +217,12 @@ fn is_not_negative(ast: &Ast, ix: NodeIx) -> bool {
 
 /// Returns the number of a literal, with its sign.
 fn literal(ast: &Ast, ix: NodeIx) -> Option<f64> {
-    match *ast.node(ix) {
-        Node::Number { literal, .. } => Some(literal),
-        Node::Negate(x) => match *ast.node(x) {
-            Node::Number { literal, .. } => Some(-literal),
-            _ => None,
-        },
+    let number = |ix: NodeIx| match *ast.node(ix) {
+        Node::Number { literal, degrees } => Some(literal_value(literal, degrees)),
         _ => None,
+    };
+    match *ast.node(ix) {
+        Node::Negate(x) => number(x).map(|x| -x),
+        _ => number(ix),
     }
 }

@@ -221,6 +221,7 @@ fn with_poles(bytes: &mut std::slice::Iter<u8>, depth: usize) -> String {
         };
     }
     let form = pick(24);
+    let [begin, end] = std::array::from_fn(|_| ["0", "1", "0.25", "30D"][usize::from(pick(4))]);
     let mut x = || format!("({})", with_poles(bytes, depth - 1));
     match form {
         0 => format!("MIN({},{})", x(), x()),
@@ -234,7 +235,7 @@ fn with_poles(bytes: &mut std::slice::Iter<u8>, depth: usize) -> String {
         8 => format!("MOD({},{})", x(), x()),
         9 => format!("IF({}: {}, {}, {})", x(), x(), x(), x()),
         10 => format!("POLY({},0,7)", x()),
-        11 => format!("STEP({},0,1,1,2)", x()),
+        11 => format!("STEP({},{begin},1,{end},2)", x()),
         12 => format!("IMPACT({},{},1,100,1.5,25,0.1)", x(), x()),
         13 => format!("EXP(-ABS({}))", x()),
         14 => format!("{}**0", x()),
@@ -242,8 +243,8 @@ fn with_poles(bytes: &mut std::slice::Iter<u8>, depth: usize) -> String {
         16 => format!("0*{}", x()),
         17 => format!("CHEBY({},{},3)", x(), x()),
         18 => format!("FORCOS({},0,1,2)", x()),
-        19 => format!("HAVSIN({},0,1,1,2)", x()),
-        20 => format!("BISTOP({},{},-1,1,100,1.5,20,0.1)", x(), x()),
+        19 => format!("HAVSIN({},{begin},1,{end},2)", x()),
+        20 => format!("BISTOP({},{},{begin},{end},100,1.5,20,0.1)", x(), x()),
         21 => format!("AKISPL({},0,1)", x()),
         22 => format!("{}-{}", x(), x()),
         _ => format!("{}*{}", x(), x()),
@@ -319,6 +320,11 @@ fn infinities_and_nan_are_never_made_numbers() {
         "IMPACT(1/TIME,1,1,100,1.5,25,0.1)",
         "IMPACT(SQRT(TIME-5),1,1,100,1.5,25,0.1)",
         "MOD(3,1/TIME)",
+        // mistakes of constants in a branch that need not be reached
+        "IF(TIME-0.25: 7, POLY(MOD(TIME,0),0,7), 7)",
+        "IF(TIME-0.25: 7, POLY(STEP(TIME,2,0,1,2),0,7), 7)",
+        "IF(TIME-0.25: 7, POLY(HAVSIN(TIME,90D,0,1,2),0,7), 7)",
+        "IF(TIME-0.25: 7, POLY(SWEEP(TIME,1,2,1,1,1,1),0,7), 7)",
     ] {
         engines_agree_about_values(text).unwrap();
     }
