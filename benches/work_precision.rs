@@ -6,8 +6,8 @@
 
 use cognate::analysis::session::Options;
 use cognate::analysis::watch::Unwatched;
-use cognate::analysis::work_precision::{Question, Reference, Study, page, sheet, survey};
 use cognate::dataset::command::Script;
+use cognate::internals::work_precision::{Question, Reference, Study, page, sheet, survey};
 use cognate::model::Model;
 use cognate::numeric::METHODS;
 use cognate::results::csv;

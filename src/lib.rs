@@ -189,7 +189,7 @@
 //!
 //! | feature | brings |
 //! |---|---|
-//! | none | the evaluator: [`expr`], [`scalar`], [`space`]; no linear algebra in its dependency tree |
+//! | none | the evaluator: [`expr`], [`scalar`]; no linear algebra in its dependency tree |
 //! | `native` | code of the processor for programs that run often (x86-64 under Linux) |
 //! | `solver` | models, their simulation, results |
 //! | `geometry` | contacts of convex solids, by parry |
@@ -268,12 +268,12 @@ struct Readme;
 
 // floor 0
 mod arrange;
-pub mod clock;
+mod clock;
 pub mod diagnostic;
 #[cfg(feature = "solver")]
 pub mod disk;
 #[cfg(feature = "solver")]
-pub mod encoding;
+mod encoding;
 mod random;
 pub mod scalar;
 
@@ -282,9 +282,9 @@ pub use diagnostic::Error;
 pub mod expr;
 #[cfg(feature = "solver")]
 pub mod numeric;
-pub mod space;
+mod space;
 // floor 2
-pub mod physics;
+mod physics;
 // floor 3
 #[cfg(feature = "solver")]
 pub mod model;
@@ -296,16 +296,18 @@ pub mod dataset;
 #[cfg(feature = "solver")]
 pub mod results;
 #[cfg(feature = "solver")]
-pub mod scene;
+mod scene;
 // floor 5
 #[cfg(feature = "solver")]
 pub mod analysis;
 #[cfg(feature = "pages")]
 #[allow(clippy::disallowed_methods, reason = "pictures have few digits")]
-pub mod report;
+mod report;
 // floor 6
 #[cfg(feature = "solver")]
 pub mod build;
+#[doc(hidden)]
+pub mod internals;
 #[cfg(feature = "serde")]
 mod serialization;
 #[cfg(feature = "setup")]

@@ -16,8 +16,8 @@ mod skipped;
 
 use cognate::dataset;
 use cognate::dataset::command::{Command, Script, Step};
-use cognate::dataset::syntax::{Item, TokenKind};
 use cognate::diagnostic::{Diagnostic, Severity};
+use cognate::internals::dataset::syntax::{Item, TokenKind};
 use cognate::model::Model;
 use meaning::{difference, meaning};
 use std::path::{Path, PathBuf};

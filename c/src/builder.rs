@@ -7,7 +7,7 @@ use engine::Error;
 use engine::ModelBuilder;
 use engine::build::{End, Key, Setting, Word};
 use engine::dataset;
-use engine::dataset::syntax::Source;
+use engine::dataset::Source;
 use engine::diagnostic::Diagnostic;
 use engine::setup::Setup;
 use std::cell::RefCell;

@@ -8,9 +8,9 @@ use super::{Exit, Failure, Outcome, interrupt, piped, recorded, remark, run};
 use super::{draw, progress::Progress};
 use cognate::diagnostic::Diagnostic;
 use cognate::disk;
+use cognate::internals::report::mechanism::page::{Shown, page};
+use cognate::internals::report::mechanism::{Bodies, Pictured, Track, glb};
 use cognate::model::Model;
-use cognate::report::mechanism::page::{Shown, page};
-use cognate::report::mechanism::{Bodies, Pictured, Track, glb};
 use cognate::results::Run;
 use std::path::{Path, PathBuf};
 
@@ -145,7 +145,7 @@ fn still(args: &Args) -> String {
 /// Returns a run as a film; `None`: the user interrupted.
 #[cfg(feature = "gif")]
 fn film(args: &Args, pictured: &Pictured, run: &Run) -> Result<Option<Vec<u8>>, Failure> {
-    use cognate::report::mechanism::film::Film;
+    use cognate::internals::report::mechanism::film::Film;
     let view = args.from.and_then(|from| draw::view(from, &pictured.view));
     let width = draw::width(args.width.unwrap_or(FILM_WIDTH));
     let units = [run.units.length.as_str(), run.units.time.as_str()];

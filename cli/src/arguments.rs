@@ -4,9 +4,9 @@
 use super::{Failure, limit};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use cognate::analysis::session::Options;
-use cognate::analysis::time::options::METHODS_OF_ADAMS;
 use cognate::dataset::command::SimulationKind;
 use cognate::disk;
+use cognate::internals::time::options::METHODS_OF_ADAMS;
 use cognate::model::ElementKind;
 use cognate::numeric::METHODS;
 use std::path::Path;

@@ -10,13 +10,13 @@
 
 use cognate::diagnostic::Diagnostic;
 use cognate::disk;
-use cognate::encoding::as_utf8;
 use cognate::expr::interpolation::{Bindings, Curve, CurvePoints, Spline};
 use cognate::expr::program::Input;
 use cognate::expr::spline::{Ends, Extrapolation};
-use cognate::physics::kinematic::kinematic_of;
+use cognate::internals::encoding::as_utf8;
+use cognate::internals::physics::kinematic::kinematic_of;
+use cognate::internals::space::{MarkerState, Mat3, Vec3, rotation};
 use cognate::scalar::{Jet, Scalar};
-use cognate::space::{MarkerState, Mat3, Vec3, rotation};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -5,9 +5,10 @@ use super::assembly;
 use super::table::Table;
 use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, complain_in_files, piped, remark, run, say, width};
-use cognate::dataset::{self, Dataset, Reading, manual};
+use cognate::dataset::{self, Dataset, Reading};
 use cognate::diagnostic::{Diagnostic, Severity};
 use cognate::disk;
+use cognate::internals::dataset::manual;
 use cognate::model::{ElementId, ElementKind, Model};
 use cognate::results;
 use serde_json::json;
@@ -235,7 +236,7 @@ pub fn without(reading: &Reading, ids: &[ElementId]) -> Result<Reading, Diagnost
 /// Reads a changed text under the name of the file that it came from.
 fn again(reading: &Reading, text: &str) -> Reading {
     let before = &reading.dataset.source;
-    let mut source = dataset::syntax::Source::from_text(before.file.as_deref(), text);
+    let mut source = cognate::dataset::Source::from_text(before.file.as_deref(), text);
     source.encoding = before.encoding;
     dataset::read_source(source)
 }

@@ -7,7 +7,7 @@ use super::{Exit, Failure, Outcome, anatomy, complain, plot, say};
 use cognate::diagnostic::Diagnostic;
 use cognate::expr::Profile;
 use cognate::expr::ast::Dialect;
-use cognate::report::Plot;
+use cognate::internals::report::Plot;
 use cognate::results::{Kind, Run, Units, csv, digits, json};
 use serde_json::{Value, json};
 use std::io::Read;

@@ -62,10 +62,10 @@ mod width;
 mod writing;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use cognate::analysis::stack;
 use cognate::dataset::Dataset;
 use cognate::diagnostic::{Cause, Diagnostic, Error, Span};
 use cognate::disk;
+use cognate::internals::stack;
 use render::Sources;
 use std::ffi::OsString;
 use std::io::Write;

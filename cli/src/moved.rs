@@ -6,11 +6,11 @@ use super::setup::Asked;
 use super::{Failure, complain_in_files, interrupt, piped, recorded, remark};
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::dataset::surface::Surfaces;
 use cognate::diagnostic::Diagnostic;
 use cognate::disk;
+use cognate::internals::dataset::surface::Surfaces;
+use cognate::internals::report::mechanism::{Dimension, Pair, Pictured};
 use cognate::model::{ElementKind, Family, Model};
-use cognate::report::mechanism::{Dimension, Pair, Pictured};
 use cognate::results::{Run, Status};
 use std::path::{Path, PathBuf};
 

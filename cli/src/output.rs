@@ -3,13 +3,13 @@
 use super::writing::{WritingArgs, remark_on_kept};
 use super::{Failure, animate, linear, remark, summary};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use cognate::analysis::motion::marker_digest;
 use cognate::analysis::session::Session;
 use cognate::analysis::work_limit::ProcessClock;
 use cognate::diagnostic::{Diagnostic, Error};
+use cognate::internals::motion::marker_digest;
+use cognate::internals::results::output_folder::OutputFolder;
 use cognate::model::{Model, SettingsStatement};
 use cognate::results::format::{Format, Sink, Style};
-use cognate::results::output_folder::OutputFolder;
 use cognate::results::{Run, json, msg};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

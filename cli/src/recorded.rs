@@ -3,14 +3,15 @@
 
 use super::setup::Asked;
 use super::{Failure, complain_in_files, run};
-use cognate::analysis::motion::{MarkerMeasure, Recorded, marker_digest};
 use cognate::dataset::command::Command;
 use cognate::diagnostic::Diagnostic;
 use cognate::disk;
 use cognate::expr::ast::{Callee, Dialect};
 use cognate::expr::{Profile, Symbol, symbol};
+use cognate::internals::motion::{MarkerMeasure, Recorded, marker_digest};
+use cognate::internals::results::kept;
 use cognate::model::Model;
-use cognate::results::{self, Run, kept};
+use cognate::results::{self, Run};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 

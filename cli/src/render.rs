@@ -2,7 +2,7 @@
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use anstream::{AutoStream, ColorChoice};
-use cognate::dataset::syntax::Source;
+use cognate::dataset::Source;
 use cognate::diagnostic::{Cause, Diagnostic, Severity, Subject};
 use cognate::disk;
 use std::io;

@@ -8,11 +8,11 @@ use super::{Exit, Failure, Outcome, interrupt, limit, piped, remark, say};
 use cognate::analysis::session::Options;
 use cognate::analysis::watch::Watch;
 use cognate::analysis::work_limit::ProcessorClock;
-use cognate::analysis::work_precision::{Follow, Question, Study, page, survey};
 use cognate::disk;
+use cognate::internals::results::output_folder::OutputFolder;
+use cognate::internals::work_precision::{Follow, Question, Study, page, survey};
 use cognate::model::{Model, RequestKind};
 use cognate::results::json;
-use cognate::results::output_folder::OutputFolder;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

@@ -3,8 +3,8 @@
 
 use cognate::analysis::sweep::is_measure;
 use cognate::diagnostic::Diagnostic;
-use cognate::report::Curve;
-use cognate::report::channels::{Channels, Shown, Source, channels};
+use cognate::internals::report::Curve;
+use cognate::internals::report::channels::{Channels, Shown, Source, channels};
 use cognate::results::{Run, digits_of_six};
 
 /// Most choices of the other parameters that have a curve each; more are shown as points.

@@ -19,7 +19,7 @@ use cognate::disk;
 use cognate::model::{ElementKind, Family, Model, SettingsStatement};
 use cognate::numeric::Stats;
 use cognate::results::format::Format;
-use cognate::results::{self, Event, Loads, Run, Status, json};
+use cognate::results::{Event, Loads, Run, Status, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -332,7 +332,7 @@ fn remark_on_loads(job: &Job) {
 
 /// Reads the name of a run: that of a file.
 pub(super) fn run_name(text: &str) -> Result<String, String> {
-    match results::kept::is_run_name(text) {
+    match cognate::internals::results::kept::is_run_name(text) {
         true => Ok(text.to_owned()),
         false => Err("a run is named as a file is, without a folder: --out DIR".to_owned()),
     }

@@ -2,10 +2,10 @@
 //! a picture of the results.
 
 use super::table::Table;
-use cognate::analysis::warning::OPEN_REACTION;
 use cognate::diagnostic::counted;
 use cognate::disk;
-use cognate::report::{Plot, svg::panels};
+use cognate::internals::report::{Plot, svg::panels};
+use cognate::internals::warning::OPEN_REACTION;
 use cognate::results::{Accuracy, Kind, Run, Seconds, Warning, digits_of_six};
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -3,7 +3,7 @@
 use crate::errors::{self, Kind};
 use cognate::ModelBuilder;
 use cognate::build::{Element, End, Key, Setting, Word};
-use cognate::dataset::manual::Entry;
+use cognate::internals::dataset::manual::Entry;
 use cognate::model::ElementKind;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

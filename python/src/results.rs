@@ -2,11 +2,11 @@
 
 use crate::errors::{self, Kind};
 use crate::model::Model;
-use cognate::analysis::motion::{MarkerMeasure, Recorded};
-use cognate::dataset::surface::Surfaces;
 use cognate::diagnostic::Diagnostic;
+use cognate::internals::dataset::surface::Surfaces;
+use cognate::internals::motion::{MarkerMeasure, Recorded};
+use cognate::internals::report::mechanism::page::page_of_run;
 use cognate::model::ElementId;
-use cognate::report::mechanism::page::page_of_run;
 use cognate::results::format::Style;
 use cognate::results::{
     self, Column, Component, Entity, Requested, Run, Sequence, Units, json, msg,

@@ -2,7 +2,7 @@
 
 use crate::watch::Raised;
 use cognate::analysis::session::Session;
-use cognate::analysis::system::closures::Call;
+use cognate::internals::system::closures::Call;
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -16,25 +16,25 @@
 //! look         whether a long phase of setting up is to go on
 //! ```
 
-pub mod accuracy;
-pub mod direction;
+pub(crate) mod accuracy;
+pub(crate) mod direction;
 #[cfg(feature = "geometry")]
-pub mod interference;
+pub(crate) mod interference;
 pub mod linear;
 mod look;
-pub mod motion;
+pub(crate) mod motion;
 pub(in crate::analysis) mod quantity;
 mod runaway;
 pub mod session;
-pub mod stack;
-pub mod start;
-pub mod statics;
+pub(crate) mod stack;
+pub(crate) mod start;
+pub(crate) mod statics;
 pub mod sweep;
-pub mod system;
-pub mod time;
-pub mod trajectory;
+pub(crate) mod system;
+pub(crate) mod time;
+pub(crate) mod trajectory;
 pub mod verify;
-pub mod warning;
+pub(crate) mod warning;
 pub mod watch;
 pub mod work_limit;
-pub mod work_precision;
+pub(crate) mod work_precision;

@@ -15,17 +15,19 @@ mod edit;
 mod extension;
 mod frequent;
 mod idle;
-pub mod lens;
-pub mod manual;
-pub mod mesh;
+pub(crate) mod lens;
+pub(crate) mod manual;
+pub(crate) mod mesh;
 mod overlooked;
-pub mod read;
-pub mod row;
-pub mod statement;
-pub mod surface;
-pub mod syntax;
-pub mod value;
-pub mod write;
+pub(crate) mod read;
+pub(crate) mod row;
+pub(crate) mod statement;
+pub(crate) mod surface;
+pub(crate) mod syntax;
+pub(crate) mod value;
+pub(crate) mod write;
+
+pub use syntax::{Encoding, Source};
 
 use crate::arrange::Arrange;
 use crate::diagnostic::{Cause, Diagnostic, Error, Severity, Span};
@@ -36,7 +38,7 @@ use read::Table;
 use row::{Given, Record};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use syntax::{Item, Source, Syntax};
+use syntax::{Item, Syntax};
 
 /// The statements of a dataset.
 pub const TABLE: Table = Table {

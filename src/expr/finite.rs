@@ -88,8 +88,8 @@ fn of_call(ast: &Ast, callee: Callee, args: &[NodeIx], worst: Risk) -> Risk {
             Handling::Passes => worst,
             Handling::PassesWithDomain => worst.max(Risk::NotANumber),
             Handling::LosesInfinity | Handling::Loses => {
-                // literals outside the domain are refused where the text is read, but for branches of
-                // an IF, which need not be reached
+                // literals outside the domain are refused where the text is read, but for
+                // branches of an IF, which need not be reached
                 let known = |&a: &NodeIx| literal(ast, a).unwrap_or(f64::NAN);
                 let known: Vec<f64> = args.iter().map(known).collect();
                 let parameters = known.get(1..).unwrap_or_default();

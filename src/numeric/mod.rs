@@ -15,21 +15,21 @@
 //! The requested tolerance is the permitted local error of each unknown relative to the largest
 //! magnitude it has had so far (see [`control::Weights`]).
 
-pub mod bernstein;
-pub mod connected;
-pub mod control;
-pub mod dense;
-pub mod eigenvalues;
-pub mod envelope;
-pub mod event;
-pub mod noise;
-pub mod pattern;
-pub mod quadrature;
-pub mod radau;
-pub mod rank;
-pub mod runge_kutta;
-pub mod sparse;
-pub mod subdivision;
+pub(crate) mod bernstein;
+pub(crate) mod connected;
+pub(crate) mod control;
+pub(crate) mod dense;
+pub(crate) mod eigenvalues;
+pub(crate) mod envelope;
+pub(crate) mod event;
+pub(crate) mod noise;
+pub(crate) mod pattern;
+pub(crate) mod quadrature;
+pub(crate) mod radau;
+pub(crate) mod rank;
+pub(crate) mod runge_kutta;
+pub(crate) mod sparse;
+pub(crate) mod subdivision;
 
 pub use radau::Radau;
 pub use runge_kutta::Dop853;
@@ -254,7 +254,7 @@ pub struct Stats {
     /// Newton iterations
     pub newton_iterations: usize,
     /// accepted steps with an error estimate above the permitted one that rounding explains (see
-    /// [`noise`])
+    /// `numeric/noise.rs`)
     pub below_rounding: usize,
     /// accepted steps that stability, not accuracy, held short
     pub stability_limited: usize,

@@ -13,13 +13,13 @@ mod file;
 pub mod format;
 pub mod gra;
 pub mod json;
-pub mod kept;
+pub(crate) mod kept;
 mod log;
 pub mod msg;
 pub mod msg_table;
 mod named;
 mod number;
-pub mod output_folder;
+pub(crate) mod output_folder;
 #[cfg(feature = "parquet")]
 pub mod parquet;
 mod part_file;

@@ -4,7 +4,7 @@ use crate::problems;
 
 use crate::counting;
 
-use cognate::numeric::event::Locator;
+use cognate::internals::numeric::event::Locator;
 use cognate::numeric::{METHODS, Method, Options, ode_method};
 use counting::allocations_so_far;
 use problems::*;

@@ -4,8 +4,8 @@ use crate::running::MAX_STEPS;
 
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::build::Setting;
-use cognate::dataset::row::canonical;
-use cognate::dataset::statement::STATEMENTS;
+use cognate::internals::dataset::row::canonical;
+use cognate::internals::dataset::statement::STATEMENTS;
 use cognate::model::{ElementKind, Model};
 use cognate::results::Status;
 use cognate::{Error, ModelBuilder};

@@ -1,16 +1,17 @@
 //! Odd arguments at the doors of the library: whatever a caller passes, there is an answer or an error that names what is wrong; nothing panics.
 
 use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::time::output::Output;
-use cognate::analysis::verify::{outline::outline, verify};
+use cognate::analysis::verify::verify;
 use cognate::analysis::watch::Unwatched;
-use cognate::dataset::manual::examples;
-use cognate::dataset::row::Record;
-use cognate::dataset::statement::STATEMENTS;
-use cognate::dataset::value::{Number, Value};
 use cognate::expr::Expr;
 use cognate::expr::interpolation::Bindings;
 use cognate::expr::program::{Program, Work};
+use cognate::internals::dataset::manual::examples;
+use cognate::internals::dataset::row::Record;
+use cognate::internals::dataset::statement::STATEMENTS;
+use cognate::internals::dataset::value::{Number, Value};
+use cognate::internals::time::output::Output;
+use cognate::internals::verify::outline::outline;
 use cognate::model::{Formula, Model};
 use cognate::{Error, results::Status};
 

@@ -5,7 +5,7 @@ use crate::running;
 
 use cognate::analysis::linear::Wanted;
 use cognate::analysis::session::state::Saved;
-use cognate::analysis::verify::outline::outline;
+use cognate::internals::verify::outline::outline;
 use cognate::model::ElementKind;
 use cognate::results::{Counts, Event, Status};
 use running::{

@@ -1,12 +1,12 @@
 //! Rates depend on time, state and configuration alone: asked again, in another order or after other questions, they have the same
 //! bits.
 
-use cognate::analysis::start::{assemble, velocities};
-use cognate::analysis::system::System;
+use cognate::internals::scene::configuration::Configuration;
+use cognate::internals::scene::{Scene, build};
+use cognate::internals::start::{assemble, velocities};
+use cognate::internals::system::System;
 use cognate::model::Model;
 use cognate::numeric::Ode;
-use cognate::scene::configuration::Configuration;
-use cognate::scene::{Scene, build};
 use proptest::prelude::*;
 
 /// Mechanisms of `tests/data/references`: chains, loops, contacts, stops and bushings.

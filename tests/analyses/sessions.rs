@@ -3,8 +3,8 @@
 use crate::running::{Analysis, Options, Session, begin, whole};
 
 use cognate::Error;
-use cognate::dataset::manual::example;
 use cognate::diagnostic::Severity;
+use cognate::internals::dataset::manual::example;
 use cognate::model::Formula;
 use cognate::results::Status;
 use std::sync::mpsc::channel;

@@ -516,13 +516,13 @@ fn closures_give_all_components_of_vector_forces() {
     let plain = forces("VFORCE/1", f, &laws[0])
         + &forces("VTORQUE/1", t, &laws[1]).replace("JFLOAT=5", "JFLOAT=7");
     let reads = ["DX(2,1)", "VX(2,1)", "WX(2,1)", "WY(2,1)"];
-    let force = |call: &cognate::analysis::system::closures::Call<'_>| {
+    let force = |call: &cognate::internals::system::closures::Call<'_>| {
         let [x, v, ..] = *call.values else {
             return [f64::NAN; 3];
         };
         [-3.0 * x - 0.1 * v, call.time.cos(), 0.2 * x]
     };
-    let torque = |call: &cognate::analysis::system::closures::Call<'_>| {
+    let torque = |call: &cognate::internals::system::closures::Call<'_>| {
         let [_, _, wx, wy] = *call.values else {
             return [f64::NAN; 3];
         };
@@ -774,7 +774,7 @@ fn samples_go_on_from_one_simulation_to_the_next() {
 
 #[test]
 fn linear_systems_are_closures_sampled_and_continuous() {
-    use cognate::analysis::system::samples::LinearSystem;
+    use cognate::internals::system::samples::LinearSystem;
     let system = |a: f64| LinearSystem::new([1, 1, 1], &[a], &[1.0], &[2.0], &[0.5]).unwrap();
     assert!(LinearSystem::new([2, 1, 1], &[1.0], &[1.0], &[2.0], &[0.5]).is_none());
     let columns = ["ARYVAL(14,1)", "ARYVAL(12,1)"];

@@ -1,12 +1,12 @@
 //! Random datasets and command files made of bytes, by the table of statements; and the laws that every text of them keeps.
 
+use cognate::dataset::Source;
 use cognate::dataset::command::{Command, Script};
-use cognate::dataset::row::Argument;
-use cognate::dataset::statement::STATEMENTS;
-use cognate::dataset::syntax::Source;
-use cognate::dataset::value::Kind;
 use cognate::dataset::{Reading, read_source, read_text};
 use cognate::diagnostic::Severity;
+use cognate::internals::dataset::row::Argument;
+use cognate::internals::dataset::statement::STATEMENTS;
+use cognate::internals::dataset::value::Kind;
 use meaning::{difference, meaning};
 use std::collections::BTreeSet;
 use std::fmt::Write;

@@ -5,8 +5,8 @@ use cognate::analysis::session::Session;
 use cognate::analysis::session::script::obey;
 use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
-use cognate::dataset::manual;
 use cognate::diagnostic::Diagnostic;
+use cognate::internals::dataset::manual;
 use std::fmt::Write;
 
 /// A body on a damped spring that is pushed ever more, with two sets of plant inputs and outputs.

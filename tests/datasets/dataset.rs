@@ -1,9 +1,9 @@
 //! Reading and writing datasets and command files: each rule of the format as a claim.
 
 use cognate::dataset::command::{Command, Script, SimulationKind};
-use cognate::dataset::statement::STATEMENTS;
 use cognate::dataset::{self, Reading};
 use cognate::diagnostic::{Diagnostic, Severity};
+use cognate::internals::dataset::statement::STATEMENTS;
 use cognate::model::*;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -108,8 +108,8 @@ fn tabs_and_form_feeds_are_blanks() {
 #[test]
 fn bytes_outside_utf8_are_windows_1252_and_come_back_the_same() {
     let bytes = b"t\xe9 \x80 \x96 \x81\nPART/1, GROUND\n! gr\xfc\xdfe\nEND\n";
-    let source = dataset::syntax::Source::from_bytes(None, bytes);
-    assert_eq!(source.encoding, dataset::syntax::Encoding::Windows1252);
+    let source = dataset::Source::from_bytes(None, bytes);
+    assert_eq!(source.encoding, dataset::Encoding::Windows1252);
     let reading = dataset::read_source(source);
     assert_eq!(reading.model.title, "té € – \u{81}");
     let formatted = reading.dataset.formatted();
@@ -135,7 +135,7 @@ fn columns_count_characters_of_however_many_bytes() {
         );
         let latin: Vec<u8> = text.chars().map(|c| c as u8).collect();
         for bytes in [text.as_bytes(), &latin] {
-            let reading = dataset::read_source(dataset::syntax::Source::from_bytes(None, bytes));
+            let reading = dataset::read_source(dataset::Source::from_bytes(None, bytes));
             let d = reading.diagnostics.iter().find(|d| d.line == place.0);
             let d = d.unwrap_or_else(|| panic!("{line}: {:?}", reading.diagnostics));
             assert_eq!((d.line, d.column), place, "{line}: {d}");

@@ -7,10 +7,11 @@
 use crate::running::{self, Analysis};
 use cognate::analysis::session::Options;
 use cognate::analysis::watch::Unwatched;
-use cognate::dataset::manual::{self, Effect};
-use cognate::dataset::statement::STATEMENTS;
-use cognate::dataset::value::Kind;
-use cognate::dataset::{self, row::Argument};
+use cognate::dataset::{self};
+use cognate::internals::dataset::manual::{self, Effect};
+use cognate::internals::dataset::row::Argument;
+use cognate::internals::dataset::statement::STATEMENTS;
+use cognate::internals::dataset::value::Kind;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 

@@ -3,8 +3,8 @@
 
 use crate::running;
 
+use cognate::dataset::Source;
 use cognate::dataset::command::Script;
-use cognate::dataset::syntax::Source;
 use cognate::dataset::{Reading, read_source, read_text};
 use cognate::diagnostic::Severity;
 use meaning::{difference, meaning};

@@ -3,8 +3,8 @@
 
 use crate::running;
 
-use cognate::physics::contact::query::Query;
-use cognate::physics::contact::{Solid, TOUCH_NUMBERS, TOUCHES};
+use cognate::internals::physics::contact::query::Query;
+use cognate::internals::physics::contact::{Solid, TOUCH_NUMBERS, TOUCHES};
 use running::{Analysis, Session, first, last, run, values};
 
 fn solve(text: &str, columns: &[&str], analysis: Analysis, end: f64, error: f64) -> Session {

@@ -2,7 +2,7 @@
 
 use crate::running;
 
-use cognate::physics::contact::{Question, Solid, TOUCH_NUMBERS};
+use cognate::internals::physics::contact::{Question, Solid, TOUCH_NUMBERS};
 use running::{Analysis, Session, first, go, last, refused, session};
 
 const RING: &str = "TORUS, CM=2, MAJOR_RADIUS=1, MINOR_RADIUS=0.2";

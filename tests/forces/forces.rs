@@ -4,12 +4,12 @@
 use crate::running;
 
 use cognate::expr::measures::Measure;
-use cognate::physics::action::Law;
-use cognate::physics::beam::Section;
-use cognate::physics::field::Field;
-use cognate::physics::kinematic::kinematic;
+use cognate::internals::physics::action::Law;
+use cognate::internals::physics::beam::Section;
+use cognate::internals::physics::field::Field;
+use cognate::internals::physics::kinematic::kinematic;
+use cognate::internals::space::{MarkerState, Mat3, Vec3, rotation};
 use cognate::scalar::{Dual, Scalar};
-use cognate::space::{MarkerState, Mat3, Vec3, rotation};
 use running::{Analysis, Session, last, refused, run, values};
 
 fn solve(text: &str, columns: &[&str], analysis: Analysis, end: f64) -> Session {

@@ -1,7 +1,8 @@
 //! The public face of the library as a text: `docs/api.txt` lists what a caller can name, each with its signature, so that a change of
 //! it shows in a diff. With BLESS=1 the list is written.
 //!
-//! It is read off the sources: what is `pub` in a public module, or in a private one that a public one shows by `pub use`.
+//! It is read off the sources: what is `pub` in a module that a caller reaches, by `pub mod` or by `pub use`. The hidden module
+//! `internals`, which promises nothing, is left out.
 
 use super::source::{File, files, root};
 use std::collections::{BTreeMap, BTreeSet};
@@ -21,10 +22,11 @@ struct Item {
 /// What the sources say of one module.
 #[derive(Debug, Default)]
 struct Module {
-    is_public: bool,
     items: BTreeMap<String, Item>,
     /// names from elsewhere: where they stand, and whether they are shown
     imports: BTreeMap<String, (Path, bool)>,
+    /// modules that are shown as a whole, by `pub use …::*`
+    globs: Vec<Path>,
     /// types by their names here, and what is public in their blocks
     methods: Vec<(String, String)>,
 }
@@ -105,6 +107,10 @@ fn named(rest: &str) -> Option<(&str, &str)> {
 /// Unfolds the tree of a `use`: pairs of a name here and the path there.
 fn unfolded(tree: &str, before: &[String], found: &mut Vec<(String, Path)>) {
     let tree = tree.trim();
+    // behind a last comma
+    if tree.is_empty() {
+        return;
+    }
     let (head, group) = match tree.split_once('{') {
         Some((head, group)) => (head, Some(group.trim_end().trim_end_matches('}'))),
         None => (tree, None),
@@ -191,7 +197,12 @@ fn read(file: &File, modules: &BTreeSet<Path>) -> (Module, BTreeSet<String>) {
                 let mut names = Vec::new();
                 unfolded(tree.trim_end_matches(';'), &[], &mut names);
                 for (name, path) in names {
-                    if let Some(path) = from_root(&path, &file.module, modules) {
+                    if let Some(mut path) = from_root(&path, &file.module, modules) {
+                        if name == "*" {
+                            path.pop();
+                            found.globs.extend(shown.map(|_| path));
+                            continue;
+                        }
                         found.imports.insert(name, (path, shown.is_some()));
                     }
                 }
@@ -259,84 +270,121 @@ fn read(file: &File, modules: &BTreeSet<Path>) -> (Module, BTreeSet<String>) {
     (found, public_modules)
 }
 
-/// Where a name of a module is defined: through imports.
-fn defined(modules: &BTreeMap<Path, Module>, at: &Path, name: &str) -> Option<(Path, String)> {
-    let (mut at, mut name) = (at.clone(), name.to_owned());
-    for _ in 0..10 {
-        let module = modules.get(&at)?;
-        if module.items.contains_key(&name) {
-            return Some((at, name));
+/// What the sources say of all modules, and which of them each declares as public.
+struct Sources {
+    modules: BTreeMap<Path, Module>,
+    declared: BTreeMap<Path, BTreeSet<String>>,
+}
+
+impl Sources {
+    fn read() -> Self {
+        let sources = files("src");
+        let paths: BTreeSet<Path> = sources.iter().map(|f| f.module.clone()).collect();
+        let (mut modules, mut declared) = (BTreeMap::new(), BTreeMap::new());
+        for file in &sources {
+            let (module, below) = read(file, &paths);
+            modules.insert(file.module.clone(), module);
+            declared.insert(file.module.clone(), below);
         }
-        let (path, _) = module.imports.get(&name)?;
-        let (last, before) = path.split_last()?;
-        (at, name) = (before.to_vec(), last.clone());
+        Self { modules, declared }
     }
-    None
+
+    /// Returns where a name of a module is defined: through imports.
+    fn defined(&self, at: &Path, name: &str) -> Option<(Path, String)> {
+        let (mut at, mut name) = (at.clone(), name.to_owned());
+        for _ in 0..10 {
+            let module = self.modules.get(&at)?;
+            if module.items.contains_key(&name) {
+                return Some((at, name));
+            }
+            let Some((path, _)) = module.imports.get(&name) else {
+                let is_here = |p: &&Path| self.modules[*p].items.contains_key(&name);
+                return Some((module.globs.iter().find(is_here)?.clone(), name));
+            };
+            let (last, before) = path.split_last()?;
+            (at, name) = (before.to_vec(), last.clone());
+        }
+        None
+    }
+
+    /// Returns the modules that a caller reaches, by the paths that the caller writes.
+    fn reached(&self) -> BTreeMap<Path, Path> {
+        let (mut found, mut next) = (BTreeMap::new(), vec![(Path::new(), Path::new())]);
+        while let Some((shown, home)) = next.pop() {
+            let below = |path: &Path, name: &str| [path.as_slice(), &[name.to_owned()]].concat();
+            for name in self.declared[&home].iter().filter(|n| *n != "internals") {
+                next.push((below(&shown, name), below(&home, name)));
+            }
+            for (name, (path, is_shown)) in &self.modules[&home].imports {
+                if *is_shown && self.modules.contains_key(path) {
+                    next.push((below(&shown, name), path.clone()));
+                }
+            }
+            found.insert(shown, home);
+        }
+        found
+    }
+
+    /// Returns what a module shows: names, and where they are defined.
+    fn shown(&self, home: &Path) -> BTreeMap<String, (Path, String)> {
+        let module = &self.modules[home];
+        let own = |path: &Path| -> Vec<(String, (Path, String))> {
+            let items = self.modules[path].items.iter().filter(|i| i.1.is_public);
+            items
+                .map(|(name, _)| (name.clone(), (path.clone(), name.clone())))
+                .collect()
+        };
+        let mut entries: BTreeMap<_, _> = own(home).into_iter().collect();
+        entries.extend(module.globs.iter().flat_map(own));
+        for (name, (_, is_shown)) in &module.imports {
+            if let Some(of) = self.defined(home, name).filter(|_| *is_shown) {
+                entries.insert(name.clone(), of);
+            }
+        }
+        entries
+    }
 }
 
 /// The list: modules, and below each what a caller can name there.
 fn listing() -> String {
-    let sources = files("src");
-    let paths: BTreeSet<Path> = sources.iter().map(|f| f.module.clone()).collect();
-    let mut modules: BTreeMap<Path, Module> = BTreeMap::new();
-    let mut public: BTreeSet<Path> = BTreeSet::from([Vec::new()]);
-    let mut declared = BTreeMap::new();
-    for file in &sources {
-        let (module, below) = read(file, &paths);
-        modules.insert(file.module.clone(), module);
-        declared.insert(file.module.clone(), below);
-    }
-    for path in &paths {
-        let Some((name, above)) = path.split_last() else {
-            continue;
-        };
-        if public.contains(above) && declared[above].contains(name) {
-            public.insert(path.clone());
-        }
-    }
-    for (path, module) in &mut modules {
-        module.is_public = public.contains(path);
-    }
+    let sources = Sources::read();
     // blocks of methods, by where their type is defined
     let mut methods: BTreeMap<(Path, String), Vec<String>> = BTreeMap::new();
-    for (path, module) in &modules {
+    for (path, module) in &sources.modules {
         for (name, method) in &module.methods {
-            if let Some(of) = defined(&modules, path, name) {
+            if let Some(of) = sources.defined(path, name) {
                 methods.entry(of).or_default().push(method.clone());
             }
         }
     }
+    let reached = sources.reached();
+    // an item is written where a caller finds it first: in its own module, if that is reached
+    let mut written: BTreeMap<(Path, String), Path> = BTreeMap::new();
+    for (shown, home) in reached.iter().filter(|(_, home)| !home.is_empty()) {
+        for (name, of) in sources.shown(home) {
+            let place = [shown.as_slice(), &[name]].concat();
+            if of.0 == *home || !written.contains_key(&of) {
+                written.insert(of, place);
+            }
+        }
+    }
     let mut text = String::new();
-    for (path, module) in modules.iter().filter(|(_, m)| m.is_public) {
-        let mut entries: BTreeMap<String, (Path, String)> = BTreeMap::new();
-        for (name, item) in &module.items {
-            if item.is_public {
-                entries.insert(name.clone(), (path.clone(), name.clone()));
-            }
-        }
-        for (name, (_, is_shown)) in &module.imports {
-            if let Some(of) = defined(&modules, path, name).filter(|_| *is_shown) {
-                entries.insert(name.clone(), of);
-            }
-        }
+    for (shown, home) in &reached {
+        let entries = sources.shown(home);
         if entries.is_empty() {
             continue;
         }
-        text += &format!(
-            "\ncognate{}\n",
-            path.iter().map(|s| format!("::{s}")).collect::<String>()
-        );
-        for (home, own) in entries.values() {
-            let item = &modules[home].items[own];
-            if home != path && public.contains(home) {
-                text += &format!("  use {}::{own}\n", home.join("::"));
+        let path: String = shown.iter().map(|s| format!("::{s}")).collect();
+        text += &format!("\ncognate{path}\n");
+        for (name, of) in entries {
+            let here = [shown.as_slice(), &[name]].concat();
+            if let Some(place) = written.get(&of).filter(|place| **place != here) {
+                text += &format!("  use {}\n", place.join("::"));
                 continue;
             }
+            let item = &sources.modules[&of.0].items[&of.1];
             text += &format!("  {}\n", without_private_fields(&item.signature));
-            let mut own_methods = methods
-                .get(&(home.clone(), own.clone()))
-                .cloned()
-                .unwrap_or_default();
+            let mut own_methods = methods.get(&of).cloned().unwrap_or_default();
             own_methods.sort();
             for member in item.members.iter().chain(&own_methods) {
                 text += &format!("    {member}\n");

@@ -66,7 +66,9 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
 fn read(root: &Path, path: &Path) -> File {
     let text = std::fs::read_to_string(path).expect("a source file");
     let lines: Vec<String> = text.lines().map(str::to_owned).collect();
-    let tests = lines.iter().position(|l| l.trim() == "#[cfg(test)]");
+    // what is beside the code for tests alone, a module or a field, does not end it
+    let begins = |pair: &[String]| pair[0] == "#[cfg(test)]" && pair[1].ends_with('{');
+    let tests = lines.windows(2).position(begins);
     let path = path.strip_prefix(root).expect("below the root");
     let mut module: Vec<String> = path
         .with_extension("")

@@ -1,13 +1,13 @@
 //! Constraints: motions against rows, rows against their gradients, one formulation against the other.
 
-use cognate::analysis::start::{assemble, velocities};
+use cognate::internals::scene::broken::broken;
+use cognate::internals::scene::cams;
+use cognate::internals::scene::configuration::Configuration;
+use cognate::internals::scene::equations::Equations;
+use cognate::internals::scene::{LinkMotion, RowKind, Scene, Source, build::Options};
+use cognate::internals::space::{Frame, Mat3, Vec3, rotation};
+use cognate::internals::start::{assemble, velocities};
 use cognate::model::{ElementId, ElementKind, Model};
-use cognate::scene::broken::broken;
-use cognate::scene::cams;
-use cognate::scene::configuration::Configuration;
-use cognate::scene::equations::Equations;
-use cognate::scene::{LinkMotion, RowKind, Scene, Source, build::Options};
-use cognate::space::{Frame, Mat3, Vec3, rotation};
 use std::sync::Arc;
 
 /// Numbers in (−1, 1), the same on every run.

@@ -303,7 +303,7 @@ fn a_gcon_may_not_read_a_floating_marker() {
 
 /// A bead on a ring, a disc on a line, a rod that is a GCON: where they stand and in which unit of length.
 fn placed(place: [f64; 3], euler: [f64; 3], length: f64) -> String {
-    use cognate::space::{Vec3, rotation};
+    use cognate::internals::space::{Vec3, rotation};
     let r = rotation::from_313(euler[0], euler[1], euler[2]);
     let put = |p: [f64; 3]| {
         let [x, y, z] = (Vec3(place) + r.apply(Vec3(p))).0.map(|x| x * length);

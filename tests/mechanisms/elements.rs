@@ -168,7 +168,7 @@ fn motions_between_markers_at_all_levels_lead_to_the_same_places() {
     let columns: Vec<&str> = COMPONENTS.iter().map(|c| c.1).collect();
     // B1 = 0.3, B2 = 0.4, B3 = 0.5 of the start, as the 3-1-3 angles of the dataset
     let r = {
-        use cognate::space::rotation::about_axis;
+        use cognate::internals::space::rotation::about_axis;
         about_axis(0, 0.3) * about_axis(1, 0.4) * about_axis(2, 0.5)
     };
     let (z, x) = (r.column(2).0, r.column(0).0);

@@ -188,7 +188,7 @@ fn joints_begin_as_their_ic_says() {
 
 /// A slider-crank of which everything may be moved, turned and measured in other units.
 fn slider_crank(place: [f64; 3], euler: [f64; 3], length: f64) -> String {
-    use cognate::space::{Vec3, rotation};
+    use cognate::internals::space::{Vec3, rotation};
     let r = rotation::from_313(euler[0], euler[1], euler[2]);
     let put = |x: f64, y: f64, z: f64| {
         let p = Vec3(place) + r.apply(Vec3([x, y, z]));
@@ -486,7 +486,7 @@ fn variables_of_a_rack_and_pinion_roll_with_the_sign_of_pd() {
 /// Between each pair of axes of the markers, in degrees; sizes do not depend on which marker is I.
 #[test]
 fn variables_of_a_ball_are_the_angles_between_the_axes_of_its_markers() {
-    use cognate::space::rotation::about_axis;
+    use cognate::internals::space::rotation::about_axis;
     let r = about_axis(2, 0.4) * about_axis(0, 1.1);
     let [x, _, z] = [0, 1, 2].map(|k| r.column(k).0);
     let [xs, zs] = [x, z].map(|v| format!("{},{},{}", v[0], v[1], v[2]));
@@ -504,7 +504,7 @@ fn variables_of_a_ball_are_the_angles_between_the_axes_of_its_markers() {
 /// First about the pin of J, then about that of I: y of J and x of I for HOOKE, z of both for UNIVERSAL.
 #[test]
 fn variables_of_universal_joints_are_turns_about_their_pins() {
-    use cognate::space::rotation::about_axis;
+    use cognate::internals::space::rotation::about_axis;
     let quarter = about_axis(0, std::f64::consts::FRAC_PI_2);
     for (a, b) in [(0.3, -0.5), (-1.1, 0.4), (0.0, 0.7)] {
         for (joint, r) in [

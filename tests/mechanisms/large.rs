@@ -2,16 +2,16 @@
 
 use crate::running;
 
-use cognate::analysis::start::assemble;
-use cognate::analysis::verify::outline::outline;
 use cognate::expr::program::Engine;
+use cognate::internals::scene::Scene;
+use cognate::internals::scene::build;
+use cognate::internals::scene::configuration::{Configuration, Way};
+use cognate::internals::scene::equations::Equations;
+use cognate::internals::scene::programs;
+use cognate::internals::scene::recorder::{self, Recorder};
+use cognate::internals::start::assemble;
+use cognate::internals::verify::outline::outline;
 use cognate::model::Model;
-use cognate::scene::Scene;
-use cognate::scene::build;
-use cognate::scene::configuration::{Configuration, Way};
-use cognate::scene::equations::Equations;
-use cognate::scene::programs;
-use cognate::scene::recorder::{self, Recorder};
 use running::{Analysis, Options, Session, begin, go, values, whole};
 use std::fmt::Write;
 

@@ -5,15 +5,15 @@
 use crate::running;
 
 use cognate::analysis::session::columns;
-use cognate::analysis::start::{assemble, velocities};
-use cognate::analysis::system::System;
-use cognate::analysis::time::{dynamics, options};
 use cognate::analysis::watch::Unwatched;
+use cognate::internals::scene::configuration::Configuration;
+use cognate::internals::scene::{Scene, build};
+use cognate::internals::space::{Mat3, Vec3, rotation};
+use cognate::internals::start::{assemble, velocities};
+use cognate::internals::system::System;
+use cognate::internals::time::{dynamics, options};
 use cognate::model::{Driven, MarkerOwner, Model, Orientation, Units};
 use cognate::results::Run;
-use cognate::scene::configuration::Configuration;
-use cognate::scene::{Scene, build};
-use cognate::space::{Mat3, Vec3, rotation};
 use running::{Analysis, Options, begin, go, whole};
 
 /// Mechanisms of `tests/scenes`, moved by gravity instead of motions; chains open and closed, in the plane and in space.

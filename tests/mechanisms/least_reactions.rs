@@ -5,14 +5,14 @@ use crate::running::whole;
 
 use crate::constraints::Draw;
 
-use cognate::analysis::start::{assemble, velocities};
+use cognate::internals::numeric::rank::{Dependence, Rank};
+use cognate::internals::physics::action::Action;
+use cognate::internals::scene::configuration::Configuration;
+use cognate::internals::scene::equations::Equations;
+use cognate::internals::scene::{Scene, build::Options};
+use cognate::internals::space::{Frame, Mat3, Vec3, rotation};
+use cognate::internals::start::{assemble, velocities};
 use cognate::model::ElementId;
-use cognate::numeric::rank::{Dependence, Rank};
-use cognate::physics::action::Action;
-use cognate::scene::configuration::Configuration;
-use cognate::scene::equations::Equations;
-use cognate::scene::{Scene, build::Options};
-use cognate::space::{Frame, Mat3, Vec3, rotation};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;

@@ -9,11 +9,11 @@
 
 use crate::running;
 
-use cognate::analysis::start::assemble;
 use cognate::analysis::verify::{Verification, verify};
+use cognate::internals::scene::configuration::Configuration;
+use cognate::internals::scene::{Scene, build};
+use cognate::internals::start::assemble;
 use cognate::model::{ElementKind, Model};
-use cognate::scene::configuration::Configuration;
-use cognate::scene::{Scene, build};
 use running::{Analysis, Options, begin, go, whole};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;

@@ -1,12 +1,12 @@
 //! Scenes: the equations of small mechanisms against closed forms, and every formulation against the other.
 
-use cognate::analysis::start::{assemble, velocities};
-use cognate::analysis::system::System;
+use cognate::internals::scene::configuration::Configuration;
+use cognate::internals::scene::unknown::UnknownId;
+use cognate::internals::scene::{Scene, Source, build::Options};
+use cognate::internals::start::{assemble, velocities};
+use cognate::internals::system::System;
 use cognate::model::Model;
 use cognate::numeric::{self, Method, Ode};
-use cognate::scene::configuration::Configuration;
-use cognate::scene::unknown::UnknownId;
-use cognate::scene::{Scene, Source, build::Options};
 use std::collections::BTreeSet;
 
 fn pendulum() -> Model {

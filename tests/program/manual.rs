@@ -2,8 +2,8 @@
 
 use super::command::{cognate, path, scratch};
 use crate::repository::root;
-use cognate::dataset::manual::{self, Effect};
 use cognate::dataset::read_text;
+use cognate::internals::dataset::manual::{self, Effect};
 use std::path::PathBuf;
 
 fn page(name: &str) -> PathBuf {

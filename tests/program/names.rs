@@ -2,12 +2,12 @@
 
 use crate::command::{cognate, path, scratch};
 use cognate::Session;
-use cognate::analysis::motion::MarkerMeasure;
 use cognate::analysis::session::{Chosen, Options, check_column};
 use cognate::analysis::sweep::Sweep;
 use cognate::diagnostic::Diagnostic;
+use cognate::internals::motion::MarkerMeasure;
+use cognate::internals::report::mechanism::Pair;
 use cognate::model::{ElementKind, Model};
-use cognate::report::mechanism::Pair;
 use cognate::setup::Load;
 
 /// Statements under the names that Adams View writes above them.

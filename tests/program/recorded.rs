@@ -6,7 +6,7 @@ use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Chosen, Options, Session};
 use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
-use cognate::dataset::manual;
+use cognate::internals::dataset::manual;
 use cognate::model::{ElementKind, Model};
 use cognate::results::{self, Kind, Run, Status};
 use std::collections::BTreeSet;

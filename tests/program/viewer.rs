@@ -4,7 +4,7 @@
 use super::command::{cognate, path, scratch};
 use crate::repository::root;
 use cognate::Model;
-use cognate::report::mechanism::page::page_of_run;
+use cognate::internals::report::mechanism::page::page_of_run;
 use cognate::results::{Component, Entity, Kind, Run, Units};
 use serde_json::Value;
 use std::path::PathBuf;

@@ -18,8 +18,8 @@ use cognate::dataset::Reading;
 use cognate::dataset::command::{Command, Step};
 use cognate::diagnostic::{Cause, Diagnostic, Error, Severity, counted};
 use cognate::disk;
+use cognate::internals::report::{Curve, Plot};
 use cognate::model::{ElementKind, Model};
-use cognate::report::{Curve, Plot};
 use cognate::results::{Status, digits_of_six};
 use std::path::{Path, PathBuf};
 

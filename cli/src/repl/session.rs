@@ -12,9 +12,9 @@ use crate::{card, explain, plot, statements};
 use cognate::diagnostic::{Cause, Diagnostic, counted};
 use cognate::expr::ast::Dialect;
 use cognate::expr::{Expansion, Profile, parse, symbol};
-use cognate::report::picture::{self, PictureFormat};
-use cognate::report::terminal::terminal;
-use cognate::report::{Curve, Plot, svg::svg};
+use cognate::internals::report::picture::{self, PictureFormat};
+use cognate::internals::report::terminal::terminal;
+use cognate::internals::report::{Curve, Plot, svg::svg};
 use cognate::results::digits;
 use std::path::Path;
 
@@ -382,7 +382,7 @@ impl Session {
     /// Sets the state of a marker.
     fn marker(&mut self, text: &str) -> Result<String, Diagnostic> {
         if text.is_empty() {
-            let place = |(id, m): (&u32, &cognate::space::MarkerState<f64>)| {
+            let place = |(id, m): (&u32, &cognate::internals::space::MarkerState<f64>)| {
                 format!("{id}: {}\n", m.p_GM.0.map(digits).join(" "))
             };
             return Ok(self.setting.data.markers.iter().map(place).collect());

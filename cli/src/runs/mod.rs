@@ -6,7 +6,7 @@ use super::table::Table;
 use super::{Exit, Failure, Outcome, remark, say, width};
 use cognate::diagnostic::Diagnostic;
 use cognate::disk;
-use cognate::results::kept::{self, KeptRun, State};
+use cognate::internals::results::kept::{self, KeptRun, State};
 use cognate::results::{digits_of_six, json};
 use serde_json::{Value, json};
 use std::path::PathBuf;

@@ -1,7 +1,7 @@
 //! The manual as JSON, for editors.
 
-use cognate::dataset::manual::{self, Effect, Entry, Page};
-use cognate::dataset::value::Kind;
+use cognate::internals::dataset::manual::{self, Effect, Entry, Page};
+use cognate::internals::dataset::value::Kind;
 use serde_json::{Value, json};
 
 /// Returns all pages and all models.

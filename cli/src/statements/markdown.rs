@@ -1,7 +1,7 @@
 //! The manual as one page of Markdown: `docs/statements.md`.
 
 use super::{form, head, meaning, warning};
-use cognate::dataset::manual::{self, Effect, Entry, Page};
+use cognate::internals::dataset::manual::{self, Effect, Entry, Page};
 
 const BEGINNING: &str = "\
 # Statements and commands

@@ -6,10 +6,10 @@ mod markdown;
 use super::card::wrapped;
 use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, piped, say, width};
-use cognate::dataset::manual::{self, Effect, Entry, Example, Page};
-use cognate::dataset::value::Kind;
 use cognate::diagnostic::Diagnostic;
 use cognate::disk;
+use cognate::internals::dataset::manual::{self, Effect, Entry, Example, Page};
+use cognate::internals::dataset::value::Kind;
 use std::path::{Path, PathBuf};
 
 /// List the statements and commands, or explain one

@@ -182,8 +182,8 @@ fn groups<T>(all: &[T], same: impl Fn(&T, &T) -> bool) -> Vec<(&T, Vec<&T>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cognate::analysis::direction::{Axis, Direction};
     use cognate::analysis::verify::Change;
+    use cognate::internals::direction::{Axis, Direction};
     use cognate::model::ElementKind;
 
     fn dependent(k: u32, fixed_by: &[u32]) -> Dependent {

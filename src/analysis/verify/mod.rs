@@ -15,10 +15,10 @@ mod axes;
 pub(in crate::analysis) mod culprit;
 pub(in crate::analysis) mod driving;
 mod free;
-pub mod idle;
+pub(crate) mod idle;
 mod json;
 pub(crate) mod massless;
-pub mod outline;
+pub(crate) mod outline;
 
 pub use advice::{Advice, Change};
 pub use axes::Axes;

@@ -2,10 +2,10 @@
 //!
 //! Three things can happen to rows that were independent at the start. They may become dependent at
 //! one position and be independent again beyond it (a folded parallelogram): the solver passes, and
-//! the position is found afterwards, in [`passes`]. Rows that were left out may determine the
+//! the position is found afterwards, in `passes`. Rows that were left out may determine the
 //! motion better than some of the rest (the two coordinates of a pin that turns): the choice is
 //! made anew, by [`better_rows`]. And a drive may ask for a position that no rows permit: the
-//! mechanism is locked, see [`locked`].
+//! mechanism is locked, see `locked`.
 
 mod known;
 mod locked;
