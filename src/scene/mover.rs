@@ -120,6 +120,17 @@ impl Mover {
         }
     }
 
+    /// Adds `part` ω × x to the rates of some numbers x that stand for velocities, where these are
+    /// turns ω at velocities `v`, written in a frame that turns along.
+    pub fn add_turning(&self, v: &[f64], x: &[f64], part: f64, rates: &mut [f64]) {
+        for &(_, at) in &self.balls {
+            let [own, spin] = [x, v].map(|x| Vec3(several(x, at)));
+            let rate: [f64; 3] = several(rates, at);
+            let turn = spin.cross(own).times(part);
+            replace(rates, at, [0, 1, 2].map(|c| rate[c] + turn.0[c]));
+        }
+    }
+
     /// Finds the small change of positions that a tangent stands for   (n_q)
     pub fn untangent(&self, q: &[f64], tangent: &[f64], change: &mut [f64]) {
         for &(k, v) in &self.simple {

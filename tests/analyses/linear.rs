@@ -378,11 +378,10 @@ fn an_equilibrium_is_at_rest_however_it_was_found_and_in_any_units() {
     }
 }
 
-/// An upright top that spins at any speed: the tilt z and its rate u in the top's own axes, z = x + i y. The rate of a
-/// quaternion is half of it times the angular velocity, which is why z turns by half the spin.
+/// An upright top that spins at any speed: small tilts z = x + i y of its axis are exp(μ t) with
 ///
 /// ```text
-/// z' = -i w/2 z + u        I u' = m g l z - i (I - C) w u
+/// A μ² − i C Ω μ − m g l = 0
 /// ```
 #[test]
 fn a_top_has_its_eigenvalues_at_any_spin() {
@@ -393,9 +392,8 @@ fn a_top_has_its_eigenvalues_at_any_spin() {
              JOINT/1, SPHERICAL, I=3, J=1\nACCGRAV/KGRAV=-9.81\n"
         );
         let found = linear(&mut session(&text), &Wanted::default());
-        let turns = [0.5 * spin, (0.35 - 0.05) / 0.35 * spin];
-        let (middle, apart) = (0.5 * (turns[0] + turns[1]), 0.5 * (turns[0] - turns[1]));
-        let inner = 0.5 * 9.81 / 0.35 - apart * apart;
+        let middle = 0.5 * 0.05 * spin / 0.35;
+        let inner = 0.5 * 9.81 / 0.35 - middle * middle;
         let (re, im) = match inner > 0.0 {
             true => (inner.sqrt(), [middle; 2]),
             false => (0.0, [1.0, -1.0].map(|s| middle + s * (-inner).sqrt())),

@@ -8,6 +8,8 @@
 //! ż = A z + B u,  y = C z + D u    z = (ξ, η, x)
 //! ```
 //!
+//! Turns of free parts and of balls, whose numbers count in a frame that turns along, are written
+//! in one that stands still at that instant: for a top alike all round A is that of all instants.
 //! With every position free, ξ are the changes of the coordinates themselves. An input is a number
 //! added to its VARIABLE, so that whatever else the VARIABLE does goes on. Motions keep moving;
 //! about a state in which things move, A is that of the instant, and [`Unrest`] says so.
@@ -364,13 +366,22 @@ fn state_rows(
 ) -> DMatrix<f64> {
     let l = system.scene.layout;
     let (n_x, n) = (l.n_x, small.z.ncols());
-    let q = &system.numbers[l.q()];
+    let [q, v] = [l.q(), l.v()].map(|places| &system.numbers[places]);
+    let mover = system.mover();
     let mut a = DMatrix::zeros(2 * n + n_x, slopes.ncols());
     for k in 0..slopes.ncols() {
         let column: Vec<f64> = slopes.column(k).iter().copied().collect();
         let rates = l.state(&column);
-        let tangent = DVector::from_vec(system.mover().tangent(q, rates.q, l.n_v));
-        let speed = DVector::from_column_slice(rates.v);
+        let mut tangent = mover.tangent(q, rates.q, l.n_v);
+        let mut speed = rates.v.to_vec();
+        if k < n {
+            // 2 q* ∘ δq̇ has half of it, as q* turns, too
+            mover.add_turning(v, small.z.column(k).as_slice(), 0.5, &mut tangent);
+            mover.add_turning(v, small.p.column(k).as_slice(), 1.0, &mut speed);
+        } else if k < 2 * n && !no_damping {
+            mover.add_turning(v, small.z.column(k - n).as_slice(), 1.0, &mut speed);
+        }
+        let [tangent, speed] = [tangent, speed].map(DVector::from_vec);
         a.view_mut((0, k), (n, 1))
             .copy_from(&small.z.tr_mul(&tangent));
         a.view_mut((n, k), (n, 1))
