@@ -18,7 +18,7 @@ pub trait Watch {
     /// Takes note of the state at the end of a step   (n_y, or more)
     fn visit(&mut self, _system: &System, _t: f64, _y: &[f64]) {}
     /// Takes states that have been put out; all but the last may be
-    /// [released](Trajectory::release).
+    /// released.
     fn collect(&mut self, _system: &System, _trajectory: &mut Trajectory) {}
     /// Takes note of the results after a simulation.
     fn simulated(&mut self, _run: &Run) {}

@@ -263,20 +263,6 @@ impl Weights {
     pub fn is_raised(&self) -> bool {
         self.raised || self.coarse
     }
-
-    /// Returns `‖e‖` of a step that ends at `y`.
-    pub fn norm(&self, e: &[f64], y: &[f64]) -> f64 {
-        worst(self.relative(e, y)) / self.tolerance
-    }
-
-    /// Iterates over `eᵢ / Mᵢ` of a step that ends at `y`.
-    pub fn relative<'a>(&'a self, e: &'a [f64], y: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        let magnitudes = self.magnitude.iter().zip(&self.most).zip(&self.origin);
-        e.iter()
-            .zip(y)
-            .zip(magnitudes)
-            .map(|((e, y), ((m, most), origin))| e / (y - origin).abs().min(*most).max(*m))
-    }
 }
 
 /// Returns the largest absolute value, or NaN when one of the values is not finite.

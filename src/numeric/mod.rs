@@ -13,7 +13,7 @@
 //! ```
 //!
 //! The requested tolerance is the permitted local error of each unknown relative to the largest
-//! magnitude it has had so far (see [`control::Weights`]).
+//! magnitude it has had so far (see `numeric/control.rs`).
 
 pub(crate) mod bernstein;
 pub(crate) mod connected;

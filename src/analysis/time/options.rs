@@ -39,7 +39,7 @@ pub struct Options {
     /// attempted steps, by all methods together
     pub max_steps: usize,
     /// whether mechanisms that nothing couples may be taken apart on the way: see
-    /// [`Trajectory::parted`](crate::analysis::trajectory::Trajectory::parted)
+    /// `Trajectory::parted`
     pub may_part: bool,
 }
 

@@ -331,6 +331,7 @@ impl<const P: usize> Fronts<P> {
     }
 
     /// Returns the number of entries of the factors.
+    #[cfg(test)]
     pub fn fill(&self) -> usize {
         self.factors.len() / P
     }
