@@ -4,15 +4,18 @@
 //! counts:
 //!
 //! ```text
-//! Mᵢ = max(|yᵢ| at all steps so far, |yᵢ| at the end of this one, φ typicalᵢ, σᵢ maxⱼ Mⱼ)
+//! Mᵢ = max(|yᵢ| at all steps so far, |yᵢ| at the end of this one, ρ typicalᵢ / E, σᵢ maxⱼ Mⱼ)
 //! ‖e‖ = maxᵢ |eᵢ| / (E Mᵢ)                                   a step is good when ‖e‖ ≤ 1
 //! ```
 //!
-//! with the requested tolerance E, φ of [`Options::floor`], and j over the unknowns of the same
-//! group as i ([`Relation`]). A coordinate that is large only because of where the origin is
+//! with the requested tolerance E, ρ = 50 roundings, and j over the unknowns of the same group as i
+//! ([`Relation`]). A coordinate that is large only because of where the origin is
 //! ([`Relation::from_beginning`]) counts as |yᵢ − yᵢ(0)|, so that moving a whole model changes
-//! nothing, and as 50 roundings of it over E at least, or over what a method permits in a step:
-//! no request is finer than its digits.
+//! nothing, and as ρ |yᵢ(0)| / E at least. A rate ([`Relation::is_rate`]) has
+//! the roundings of what it changes over the mean step h so far, ρ typicalᵢ / (E h). So nothing is permitted absolutely but rounding: a
+//! motion of a nanometre is as exact as one of a metre, and no request is finer than digits are.
+//! (A floor of a thousandth of the typical magnitude took one per cent fewer evaluations on the
+//! references, and lost what moves by less than that times the request.)
 //!
 //! Results are judged column by column against the largest value of the column, so the largest
 //! magnitude so far is the right measure: an oscillation through zero costs nothing there. A
@@ -35,8 +38,8 @@ pub struct Weights {
     tolerance: f64,
     /// whether a smaller one was asked for
     raised: bool,
-    /// φ
-    floor: f64,
+    /// ρ/E
+    least: f64,
     /// typical magnitudes that the problem gave   (n)
     typical: Vec<f64>,
     /// Mᵢ   (n)
@@ -55,11 +58,13 @@ pub struct Weights {
     largest: Vec<f64>,
     /// the courses by which transients are known   (n)
     courses: Vec<Course>,
-    /// time of the last solution seen, in s
-    seen: f64,
+    /// times of the first solution and of the last one seen, in s
+    seen: [f64; 2],
+    /// steps between them
+    steps: usize,
 }
 
-/// Roundings of a coordinate that its permitted error is at least.
+/// Roundings of what is typical of an unknown that its permitted error is at least.
 const ROUNDINGS: f64 = 50.0;
 /// Levels of size that are told apart, from a magnitude down.
 const LEVELS: usize = 8;
@@ -145,12 +150,13 @@ impl Weights {
     /// Creates weights for `n` unknowns, all of typical magnitude one until [`Weights::reset`].
     pub fn new(n: usize, options: &Options) -> Self {
         let tolerance = options.tolerance.max(SMALLEST_TOLERANCE);
+        let least = ROUNDINGS * f64::EPSILON / tolerance;
         Weights {
             tolerance,
             raised: options.tolerance < SMALLEST_TOLERANCE,
-            floor: options.floor,
+            least,
             typical: vec![1.0; n],
-            magnitude: vec![options.floor; n],
+            magnitude: vec![least; n],
             relations: vec![Relation::default(); n],
             most: vec![f64::INFINITY; n],
             origin: vec![0.0; n],
@@ -158,7 +164,8 @@ impl Weights {
             coarse: false,
             largest: Vec::new(),
             courses: vec![Course::default(); n],
-            seen: f64::INFINITY,
+            seen: [f64::INFINITY; 2],
+            steps: 0,
         }
     }
 
@@ -172,7 +179,7 @@ impl Weights {
         let from = self.from_beginning.iter_mut().zip(&self.relations);
         from.for_each(|(from, r)| *from = r.from_beginning);
         let numbers = self.relations.iter();
-        let n_groups = numbers.map(|r| r.group.map_or(0, |g| usize::from(g) + 1));
+        let n_groups = numbers.map(|r| r.group.map_or(0, |g| g as usize + 1));
         self.largest = vec![0.0; n_groups.max().unwrap_or(0)];
     }
 
@@ -185,30 +192,45 @@ impl Weights {
             } else {
                 1.0
             };
-            *m = *typical * self.floor;
+            *m = *typical * self.least;
         }
         self.courses.fill(Course::default());
-        self.seen = f64::INFINITY;
+        self.seen = [f64::INFINITY; 2];
     }
 
     /// Raises the magnitudes to those of the solution `y` at `t`, and forgets transients.
     pub fn see(&mut self, t: f64, y: &[f64]) {
-        if self.seen == f64::INFINITY {
+        let [begun, before] = &mut self.seen;
+        if *before == f64::INFINITY {
             let origins = self.origin.iter_mut().zip(y).zip(&self.from_beginning);
             origins.for_each(|((origin, y), from)| *origin = if *from { *y } else { 0.0 });
+            (*begun, self.steps) = (t, 0);
+        } else {
+            self.steps += 1;
         }
-        let dt = (t - self.seen).max(0.0);
-        self.seen = t;
+        let dt = (t - *before).max(0.0);
+        *before = t;
+        // a guess where no step has been taken
+        let mean_step = match t > *begun {
+            true => (t - *begun) / self.steps as f64,
+            false => 1.0,
+        };
         self.coarse = false;
-        let least = ROUNDINGS * f64::EPSILON / self.tolerance;
         let all = self.magnitude.iter_mut().zip(y).zip(&mut self.courses);
-        let places = self.typical.iter().zip(&self.origin);
-        for (((m, y), course), (typical, origin)) in all.zip(places) {
+        let places = self.typical.iter().zip(&self.origin).zip(&self.relations);
+        for (((m, y), course), ((typical, origin), relation)) in all.zip(places) {
             let way = course.see((y - origin).abs(), *m, (t, dt));
-            let rounded = least * origin.abs();
-            *m = way.max(typical * self.floor).max(rounded);
+            let rounded = self.least * origin.abs();
+            let over = if relation.is_rate { mean_step } else { 1.0 };
+            let least = typical * self.least / over;
+            *m = way.max(least).max(rounded);
             self.coarse |= rounded > typical.max(way);
         }
+        self.share();
+    }
+
+    /// Makes magnitudes no smaller than their shares of the largest in their groups.
+    fn share(&mut self) {
         if self.largest.is_empty() {
             return;
         }
@@ -216,13 +238,13 @@ impl Weights {
         for (m, r) in self.magnitude.iter_mut().zip(&self.relations) {
             *m = m.min(r.most);
             if let Some(g) = r.group {
-                let largest = &mut self.largest[usize::from(g)];
+                let largest = &mut self.largest[g as usize];
                 *largest = largest.max(*m);
             }
         }
         for (m, r) in self.magnitude.iter_mut().zip(&self.relations) {
             if let Some(g) = r.group {
-                *m = m.max(r.share * self.largest[usize::from(g)]);
+                *m = m.max(r.share * self.largest[g as usize]);
             }
         }
     }

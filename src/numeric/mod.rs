@@ -117,8 +117,7 @@ pub trait Ode {
     ) -> Result<(), Failure> {
         unreachable!("a problem that tells the pattern of its Jacobian tells its entries")
     }
-    /// Sets the typical magnitude of each unknown; errors are measured against a small part of it
-    /// ([`Options::floor`]) or more   (n)
+    /// Sets the typical magnitude of each unknown, of which it has the roundings   (n)
     fn typical(&self, typical: &mut [f64]);
     /// Sets how the magnitude of each unknown depends on others   (n)
     fn relations(&self, _relations: &mut [Relation]) {}
@@ -132,13 +131,16 @@ pub struct Relation {
     /// turns it has made
     pub most: f64,
     /// number of the group of unknowns of one kind that it belongs to
-    pub group: Option<u16>,
+    pub group: Option<u32>,
     /// least magnitude, as a part of the largest in its group: where one angle of many hardly
     /// moves, the motion of the others decides
     pub share: f64,
     /// the unknown whose rate it is, if its error may be judged by the change it makes to that one
     /// within a step
     pub rate_of: Option<usize>,
+    /// whether it is a rate whose typical magnitude is that of what it changes: it has the roundings
+    /// of that over a mean step
+    pub is_rate: bool,
     /// whether its magnitude is that of its way from where it began: a coordinate that a choice of
     /// origin makes large
     pub from_beginning: bool,
@@ -151,6 +153,7 @@ impl Default for Relation {
             group: None,
             share: 0.0,
             rate_of: None,
+            is_rate: false,
             from_beginning: false,
         }
     }
@@ -161,8 +164,6 @@ impl Default for Relation {
 pub struct Options {
     /// E: permitted local error of each unknown, relative to its magnitude
     pub tolerance: f64,
-    /// part of the typical magnitude below which errors are measured absolutely
-    pub floor: f64,
     /// first step, in s; estimated from the problem when absent
     pub h_initial: Option<f64>,
     /// longest step, in s
@@ -179,7 +180,6 @@ impl Default for Options {
     fn default() -> Self {
         Options {
             tolerance: 1e-6,
-            floor: 1e-3,
             h_initial: None,
             h_max: f64::INFINITY,
             h_min: 0.0,

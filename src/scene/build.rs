@@ -52,10 +52,6 @@ pub struct Options {
     pub shells: Arc<BTreeMap<u32, Result<Shell, String>>>,
 }
 
-/// Extents that make a typical length of a motion, where the origin is not nearer than that: a body
-/// may be small beside its way.
-const TYPICAL_EXTENTS: f64 = 100.0;
-
 impl Scene {
     /// Makes the scene of a model; it is shared and never changes.
     ///
@@ -123,6 +119,7 @@ impl Scene {
         if c.errors.is_empty() {
             b.loops(&mut c);
             b.part_downstream();
+            b.scene.memberships = b.scene.find_memberships();
             b.natural_sizes();
         }
         if c.errors.is_empty() {
@@ -280,13 +277,9 @@ impl<'m> Builder<'m> {
         let reach = if reach > 0.0 { reach } else { 1.0 };
         let [diameter, gyration] = self.extents();
         let size = if diameter > 0.0 { diameter } else { gyration };
-        let extent = diameter.max(gyration);
         let s = &mut self.scene;
-        (s.size, s.length, s.extent) = (reach, reach, reach);
-        if size > 0.0 {
-            s.size = size;
-            s.extent = (TYPICAL_EXTENTS * extent).min(reach);
-        }
+        s.size = if size > 0.0 { size } else { reach };
+        s.length = reach;
     }
 
     /// Returns the diameter of what moves, as the dataset places it, and the largest radius of

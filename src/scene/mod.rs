@@ -32,6 +32,7 @@ pub mod layout;
 pub mod left_out;
 pub mod loop_factor;
 pub mod loops;
+pub mod mechanisms;
 mod motions;
 pub mod mover;
 pub mod programs;
@@ -49,7 +50,6 @@ pub mod untouchable;
 use crate::expr::measures::Measure;
 use crate::expr::program::Program;
 use crate::model::{ElementId, ElementKind, Level};
-use crate::numeric::connected::{SparseRow, connected};
 use crate::physics::coupler::Gauge;
 use crate::physics::row::Law;
 use crate::scene::asker::Asker;
@@ -471,9 +471,8 @@ pub struct Scene {
     /// how large the mechanism is, wherever the origin is: what is told and what moves at assembly
     /// depends on this alone
     pub(crate) size: f64,
-    /// a typical length of its motion, however far away the whole stands: its distance from the
-    /// origin, or extents of what moves
-    pub(crate) extent: f64,
+    /// which mechanism each link belongs to   (n_links)
+    pub(crate) memberships: Vec<mechanisms::Membership>,
     /// distance over which constraints are spread: an arm for comparing torques with forces
     pub span: f64,
     /// misalignment up to which rows that depend on others are left out: IC/ERROR, in rad, and as
@@ -492,22 +491,6 @@ impl Link {
 }
 
 impl Scene {
-    /// Returns how many groups of links move that nothing but forces can couple: links with what
-    /// carries them, and those that constraints join.
-    pub fn n_mechanisms(&self) -> usize {
-        let joined = |links: &mut dyn Iterator<Item = usize>| links.map(|l| (l, 1.0)).collect();
-        let links = self.links.iter().enumerate();
-        let carried =
-            links.map(|(l, link)| joined(&mut [Some(l), link.parent].into_iter().flatten()));
-        let mut rows: Vec<SparseRow> = carried.collect();
-        let pairs = self.constraints.iter().filter_map(|c| c.markers);
-        rows.extend(pairs.filter_map(|(i, j)| {
-            let [i, j] = [i, j].map(|m| self.markers[m].link);
-            Some(joined(&mut [i?, j?].into_iter()))
-        }));
-        connected(&rows, self.links.len()).len()
-    }
-
     /// Returns which links show no inertia to what carries them, whatever moves: rigid ones without
     /// mass that carry nothing else   (n_links)
     pub(in crate::scene) fn idle_links(&self) -> Vec<bool> {

@@ -403,48 +403,57 @@ fn switching_of_loops(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Un
     }))
 }
 
-/// Records what `f` computes from the instant with every branch as the sign of its switch says:
-/// reads one sign per switch after the layout's numbers. `None`: branches cannot be held. The
-/// switches are those of [`switching`], in their order, because the rates are recorded before
+/// Records what `f` computes from the instant, and `n_further` numbers, with every branch as the
+/// sign of its switch says; returns with it the row that it reads: the numbers of the layout, the
+/// unknowns of loops, the further numbers, one sign per switch. `None`: branches cannot be held.
+/// The switches are those of [`switching`], in their order, because the same is recorded before
 /// anything else.
-fn held_with<F>(scene: Configured<'_>, switching: &Switching, f: F) -> Option<Program>
+pub fn held_with<F>(
+    scene: Configured<'_>,
+    switching: &Switching,
+    n_further: usize,
+    f: F,
+) -> Option<(Program, LongRow)>
 where
-    F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
+    F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>>,
 {
-    switching.held.as_ref().filter(|_| scene.loops.is_empty())?;
-    let n_switches = switching.switches.n_outputs();
+    switching.held.as_ref()?;
+    let n_loops = scene.loops.len();
     let row = LongRow {
         numbers: scene.layout,
-        n_more: 0,
-        n_sides: n_switches,
+        n_more: n_loops + n_further,
+        n_sides: switching.switches.n_outputs(),
     };
-    let (n_wanted, same) = (Cell::new(0), Cell::new(false));
+    let (n_known, same) = (Cell::new(0..0), Cell::new(false));
     let (mut programs, complaints) = recorded(
         scene,
-        n_switches,
+        row.n_more + row.n_sides,
+        n_loops > 0,
         false,
-        false,
-        |at, _| {
+        |at, more| {
             let mut out = rate(at);
+            if n_loops > 0 {
+                out.extend(at.loop_residuals());
+            }
+            let first = out.len();
             out.extend(sources(at, &scene));
-            let wanted = f(at);
-            n_wanted.set(wanted.len());
-            out.extend(wanted);
+            n_known.set(first..out.len());
+            out.extend(f(at, &more[n_loops..row.n_more]));
             out
         },
         |builder, values| {
-            let (known, wanted) = values.split_at(values.len() - n_wanted.get());
+            let known = n_known.take();
+            let wanted = &values[known.end..];
             let side = |k: usize| Input::Slot(row.side_at(k) as u32);
-            let sources = &known[scene.layout.n_rates()..];
-            let (held, switches) = builder.held(wanted, sources, side);
-            same.set(switches.len() == n_switches);
+            let (held, switches) = builder.held(wanted, &values[known], side);
+            same.set(switches.len() == row.n_sides);
             vec![held]
         },
     );
     if !same.get() || !complaints.is_empty() {
         return None;
     }
-    programs.pop()
+    programs.pop().map(|program| (program, row))
 }
 
 /// Records the rates of the states downstream of the mechanism; then, where they change branch with
@@ -461,10 +470,13 @@ pub fn downstream(
     let has_branches = recorder.end(&rates, |builder, values| {
         !builder.switching(&values).is_empty()
     })?;
-    let held = switching
-        .filter(|_| has_branches)
-        .and_then(|switching| held_with(recorder.scene(), switching, |at| at.downstream_rates()));
-    Ok((recorder.program(&rates)?, held))
+    let held = switching.filter(|_| has_branches && recorder.scene().loops.is_empty());
+    let held = held.and_then(|switching| {
+        held_with(recorder.scene(), switching, 0, |at, _| {
+            at.downstream_rates()
+        })
+    });
+    Ok((recorder.program(&rates)?, held.map(|(program, _)| program)))
 }
 
 /// The rates, and how strong the weakest pivot of the rows is.

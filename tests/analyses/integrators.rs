@@ -634,7 +634,7 @@ impl Ode for Humming {
     }
     fn relations(&self, relations: &mut [Relation]) {
         for (k, relation) in relations.iter_mut().enumerate() {
-            (relation.group, relation.share) = (Some(u16::from(k > 1)), 0.1);
+            (relation.group, relation.share) = (Some(u32::from(k > 1)), 0.1);
             relation.rate_of = k.checked_sub(2).filter(|_| self.told);
         }
     }

@@ -4,7 +4,7 @@
 use crate::source::{files, root};
 
 /// How many there are at most. It only ever gets less.
-const MOST: usize = 484;
+const MOST: usize = 482;
 
 /// Lists the constants that are numbers: place, name, value, comment.
 fn listing() -> Vec<String> {

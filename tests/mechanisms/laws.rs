@@ -585,3 +585,69 @@ fn what_nothing_couples_to_a_mechanism_changes_no_bit_of_its_assembly() {
     }
     assert!(n_moved > 20, "{n_moved}");
 }
+
+/// Something that does not move, farther away than anything else.
+fn far_away(place: f64) -> String {
+    format!(
+        "MARKER/2002, PART=1, QP={place:?},0,0\nPART/200, QG={place:?},0,0, MASS=1, CM=2000, IP=1,1,1\n\
+         MARKER/2000, PART=200\nJOINT/201, FIXED, I=2000, J=2002\n"
+    )
+}
+
+/// What stands somewhere else changes a motion by rounding alone: errors are measured against the mechanism that makes them.
+/// (Rows are closed against the distance of the whole scene from the origin, so that last bits may differ.)
+#[test]
+fn what_stands_far_away_changes_no_motion() {
+    for name in SCENES {
+        let model = scene(name);
+        let columns = measured(&model);
+        let alone = solved(&model, &columns);
+        for place in [1e3, 7e6] {
+            let text = model.to_text();
+            let text = text.replace("\nEND", &format!("\n{}END", far_away(place)));
+            let other = Model::from_text(&text).unwrap_or_else(|e| panic!("{e:?}\n{text}"));
+            let found = solved(&other, &columns);
+            for c in &columns {
+                let [a, b] = [&alone, &found].map(|run| run.column(c).expect("a column"));
+                assert_eq!(a.len(), b.len());
+                for (a, b) in a.iter().zip(b) {
+                    let off = (a - b).abs() / (1.0 + a.abs());
+                    assert!(off < 1e-11, "{name} {place} {c}: {a} {b}");
+                }
+            }
+        }
+    }
+}
+
+/// A motion of a nanometre is as exact as one of a metre: z'' = −z from z = 0, beside its own size and beside what is far away.
+#[test]
+fn motions_of_any_size_are_as_exact_as_asked_for() {
+    const REQUEST: f64 = 1e-6;
+    for amplitude in [1e3, 1.0, 1e-3, 1e-6, 1e-9] {
+        for far in [None, Some(7e6)] {
+            let text = format!(
+                "SPRING\nPART/1, GROUND\nMARKER/1, PART=1\nMARKER/3, PART=1, QP=0,0,1\n\
+                 PART/2, MASS=1, CM=2, IP=.01,.01,.01, QG=0,0,1, VZ={amplitude:e}\nMARKER/2, PART=2\n\
+                 JOINT/1, TRANSLATIONAL, I=2, J=3\n\
+                 SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=2, J=3, FUNCTION=-DZ(2,3)\n{}END\n",
+                far.map_or_else(String::new, far_away)
+            );
+            for method in ["AUTO", "RADAU5"] {
+                let options = Options {
+                    columns: vec!["DZ(2,3)".to_owned()],
+                    error: Some(REQUEST),
+                    method: (method != "AUTO").then(|| method.to_owned()),
+                    ..Options::default()
+                };
+                let mut session = begin(whole(&text), "law", options);
+                go(&mut session, Analysis::Dynamic, 10.0, 5);
+                let found = session.run.column("DZ(2,3)").expect("a column");
+                let off = (found[found.len() - 1] / amplitude - 10.0_f64.sin()).abs();
+                assert!(
+                    off < 50.0 * REQUEST,
+                    "{amplitude} {far:?} {method}: {off:e}"
+                );
+            }
+        }
+    }
+}

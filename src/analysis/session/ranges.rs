@@ -5,7 +5,7 @@ use std::ops::Range;
 
 /// Way of a coordinate, or velocity, over what is typical of it, up to which everything rests:
 /// as rounding and the permitted error of a method move it where forces balance.
-const RESTING: f64 = 1e-9;
+const RESTING: f64 = 1e-12;
 
 /// Least and largest value of each coordinate and velocity of a simulation, seen at the ends of
 /// steps: outputs change nothing.

@@ -49,8 +49,6 @@ pub struct Branches {
     numbers_of_steps: Vec<f64>,
     /// whether they are
     is_aside: bool,
-    /// values of the switches at a look aside   (n_switches)
-    values_aside: Vec<f64>,
     /// the program of the switches over bounds
     bounds: Bounded,
 }
@@ -86,7 +84,6 @@ impl Branches {
             slides: Slides::default(),
             numbers_of_steps: Vec::new(),
             is_aside: false,
-            values_aside: vec![0.0; n],
             bounds: Bounded::default(),
         })
     }
@@ -259,16 +256,6 @@ impl Branches {
         let held = self.switching.as_ref()?.held.as_ref()?;
         let (strength, is_finite) = held.run_finite(&self.numbers, &mut self.held_work, ydot);
         (is_finite && strength.is_finite()).then_some(strength)
-    }
-
-    /// Returns whether the numbers say the same branches as are held: what is zero says none.
-    pub(super) fn are_held_at(&mut self, numbers: &[f64]) -> bool {
-        let mut values = std::mem::take(&mut self.values_aside);
-        self.values(numbers, &mut values);
-        let mut pairs = values.iter().zip(&self.sides);
-        let are_held = pairs.all(|(value, side)| *side == 0.0 || value * side > 0.0);
-        self.values_aside = values;
-        are_held
     }
 
     /// Returns how long a step from a state may be so that no angle which decides a branch turns by

@@ -1,18 +1,16 @@
 //! Energy of a system, and the powers of what acts on it, by a program of their own.
 
 use super::System;
+use super::branches::Branches;
 use super::recording::Recording;
 use crate::analysis::trajectory::{Energy, Powers};
 use crate::model::ElementKind;
 use crate::numeric::quadrature::Node;
+use crate::scalar::Scalar;
 use crate::scene::Scene;
+use crate::scene::equations::Equations;
 use crate::scene::layout::LongRow;
-use crate::scene::programs::record_more;
-
-/// Parts of a step by which nodes at its ends are moved inwards: a force may jump where a step
-/// ends, and the step lies on one side. The first is enough where no branch changes; the others
-/// are tried where the branches there are not those of the step.
-const INWARDS: [f64; 4] = [1e-8, 1e-6, 1e-4, 1e-2];
+use crate::scene::programs::{self, record_more};
 
 /// The program of energy and powers, and what it reads.
 #[derive(Clone, Debug)]
@@ -25,6 +23,17 @@ pub(super) struct EnergyProgram {
     /// numbers of the system before it was evaluated
     kept: Vec<f64>,
     does_work: bool,
+    /// the powers on the branches that are held; `None`: nothing changes branch
+    held: Option<HeldPowers>,
+}
+
+/// The program of powers with branches held, and what it reads: numbers, unknowns of loops,
+/// accelerations, sides.
+#[derive(Clone, Debug)]
+struct HeldPowers {
+    program: Recording,
+    row: LongRow,
+    inputs: Vec<f64>,
 }
 
 /// Returns whether anything but gravity changes the energy of a scene.
@@ -41,7 +50,10 @@ fn is_driven(scene: &Scene) -> bool {
 impl EnergyProgram {
     /// Tells that so many evaluations follow.
     pub fn expect_runs(&self, n: usize) {
-        self.program.program.expect_runs(n);
+        match &self.held {
+            Some(held) => held.program.program.expect_runs(n),
+            None => self.program.program.expect_runs(n),
+        }
     }
 }
 
@@ -62,13 +74,23 @@ impl System {
         let (program, _) = record_more(scene, row.n_more, |at, vdot| {
             let mut out = at.energy().to_vec();
             if does_work {
-                let p = at.powers();
-                out.extend([p.stored, p.dissipated, p.functions]);
-                if driven {
-                    out.push(at.energy_rate(vdot) - p.stored - p.dissipated - p.functions);
-                }
+                out.extend(powers_at(at, vdot));
             }
             out
+        });
+        let switching = self
+            .recorded
+            .branches
+            .switching
+            .as_ref()
+            .filter(|_| does_work);
+        let held = switching.and_then(|switching| {
+            programs::held_with(scene, switching, row.n_more, |at, vdot| powers_at(at, vdot))
+        });
+        let held = held.map(|(program, row)| HeldPowers {
+            program: Recording::new(program),
+            inputs: vec![0.0; row.len()],
+            row,
         });
         self.energy = Some(Box::new(EnergyProgram {
             program: Recording::new(program),
@@ -76,6 +98,7 @@ impl System {
             inputs: vec![0.0; row.len()],
             kept: self.numbers.clone(),
             does_work,
+            held,
         }));
     }
 
@@ -90,76 +113,42 @@ impl System {
         Some([values[0], values[1]])
     }
 
-    /// Returns the powers at a node of a step, if they are watched; `strictly`: and if it is on the
-    /// branches of the step, or can be moved there.
-    pub(in crate::analysis) fn powers(
-        &mut self,
-        [t0, t1]: [f64; 2],
-        node: Node,
-        strictly: bool,
-    ) -> Option<Powers> {
-        if self.recorded.branches.is_sliding() {
-            return self.aside(|system| system.mean_powers(node));
-        }
-        let mut state = std::mem::take(&mut self.stage);
-        let (mut t, mut is_held) = (node.t, false);
-        for part in INWARDS {
-            let inwards = part * (t1 - t0);
-            let delta = (t0 + inwards - node.t).max(0.0) + (t1 - inwards - node.t).min(0.0);
-            state.clear();
-            state.extend(node.y.iter().zip(node.ydot).map(|(y, f)| y + delta * f));
-            t = node.t + delta;
-            is_held = self.is_on_held_branch(t, &state);
-            if delta == 0.0 || is_held {
-                break;
-            }
-        }
-        if strictly && !is_held {
-            self.stage = state;
-            return None;
+    /// Returns the powers at a node of a step, on the branches of the step; `None`: they are not
+    /// watched, or have no value.
+    pub(in crate::analysis) fn powers(&mut self, node: Node) -> Option<Powers> {
+        let has_held = self.energy.as_ref()?.held.is_some();
+        if has_held && self.recorded.branches.is_holding() {
+            return self.aside(|system| system.held_powers(node));
         }
         let vdot = self.scene.layout.state(node.ydot).v;
-        let powers = self.run_energy(t, &state, vdot).map(powers_of);
-        self.stage = state;
-        powers
+        self.run_energy(node.t, node.y, vdot).map(powers_of)
     }
 
-    /// Returns the powers at a node of a step along which the motion stays where functions change
-    /// branch: the mean of those of the branches.
-    fn mean_powers(&mut self, node: Node) -> Option<Powers> {
-        let kept = self.numbers.clone();
-        let row = self.numbers_at(node.t, node.y);
-        let branches = self.rows_of_branches(&row);
-        let (y, vdot) = (self.scene.layout.y(), self.scene.layout.state(node.ydot).v);
-        let mut mean = Some([0.0; 4]);
-        for (part, row) in branches {
-            let powers = self
-                .run_energy(node.t, &row[y.clone()], vdot)
-                .map(powers_of);
-            mean = mean
-                .zip(powers)
-                .map(|(mut mean, powers): (Powers, Powers)| {
-                    (mean.iter_mut().zip(powers)).for_each(|(m, power)| *m += part * power);
-                    mean
-                });
-        }
-        self.numbers.copy_from_slice(&kept);
-        mean
-    }
-
-    /// Returns whether the functions are at a state on the branches that are held.
-    fn is_on_held_branch(&mut self, t: f64, state: &[f64]) -> bool {
+    /// Returns the powers on the branches that are held; where the motion stays between branches,
+    /// their mean over these.
+    fn held_powers(&mut self, node: Node) -> Option<Powers> {
+        let mut energy = self.energy.take()?;
+        energy.kept.copy_from_slice(&self.numbers);
+        self.set(node.t, node.y);
+        let vdot = self.scene.layout.state(node.ydot).v;
         let branches = &mut self.recorded.branches;
-        let Some(energy) = self.energy.as_mut().filter(|_| branches.is_holding()) else {
-            return true;
-        };
-        let numbers = &mut energy.kept;
-        numbers.copy_from_slice(&self.numbers);
-        self.scene.layout.set_state(numbers, t, state);
-        branches.exchange_traces();
-        let holds = branches.are_held_at(numbers);
-        branches.exchange_traces();
-        holds
+        let mean = energy.held.as_mut().and_then(|held| {
+            if !branches.is_sliding() {
+                return held.run(branches, &self.numbers, vdot);
+            }
+            let mut mean = [0.0; 4];
+            let between = branches.between(&self.numbers, &vec![1.0; node.y.len()]);
+            for mut branch in between {
+                branches.exchange_sides(&mut branch.sides);
+                let powers = held.run(branches, &self.numbers, vdot);
+                branches.exchange_sides(&mut branch.sides);
+                (mean.iter_mut().zip(powers?)).for_each(|(m, power)| *m += branch.part * power);
+            }
+            Some(mean)
+        });
+        self.numbers.copy_from_slice(&energy.kept);
+        self.energy = Some(energy);
+        mean
     }
 
     /// Returns the powers of forces at a state: given back by what stores energy, of damping and
@@ -192,7 +181,41 @@ impl System {
     }
 }
 
-/// Returns the powers among the values of the program.
+impl HeldPowers {
+    /// Returns the powers at some numbers on the sides that are held there; `None`: a loop has no
+    /// solution near.
+    fn run(&mut self, branches: &mut Branches, numbers: &[f64], vdot: &[f64]) -> Option<Powers> {
+        let (of_branches, row) = (branches.row, self.row);
+        let read = branches.with_sides(numbers)?;
+        let (more, sides) = (row.more(), row.sides());
+        self.inputs[..row.numbers.len()].copy_from_slice(&read[..row.numbers.len()]);
+        self.inputs[sides].copy_from_slice(&read[of_branches.sides()]);
+        let (loops, accelerations) = self.inputs[more].split_at_mut(of_branches.n_more);
+        loops.copy_from_slice(&read[of_branches.more()]);
+        if accelerations.len() == vdot.len() {
+            accelerations.copy_from_slice(vdot);
+        }
+        self.program.run(&self.inputs);
+        Some(first_powers(&self.program.values))
+    }
+}
+
+/// Returns the powers among the values of the program of energy.
 fn powers_of(values: &[f64]) -> Powers {
-    std::array::from_fn(|k| values.get(2 + k).copied().unwrap_or(0.0))
+    first_powers(values.get(2..).unwrap_or(&[]))
+}
+
+/// Returns the powers that stand first; those that are not there are zero.
+fn first_powers(values: &[f64]) -> Powers {
+    std::array::from_fn(|k| values.get(k).copied().unwrap_or(0.0))
+}
+
+/// Returns the powers of what acts on a scene; that of motions last, where accelerations are given.
+fn powers_at<S: Scalar>(at: &Equations<'_, S>, vdot: &[S]) -> Vec<S> {
+    let p = at.powers();
+    let mut all = vec![p.stored, p.dissipated, p.functions];
+    if !vdot.is_empty() {
+        all.push(at.energy_rate(vdot) - p.stored - p.dissipated - p.functions);
+    }
+    all
 }

@@ -302,8 +302,8 @@ impl Ode for System {
                 && !c.angular
                 && !f.in_ball
             {
-                typical.q[q] = self.scene.extent;
-                typical.v[v] = self.scene.extent;
+                let size = self.scene.memberships[c.link].size;
+                (typical.q[q], typical.v[v]) = (size, size);
             }
         }
     }
@@ -314,7 +314,8 @@ impl Ode for System {
             let Source::Free { q, v } = c.source else {
                 continue;
             };
-            let kind = u16::from(c.angular);
+            // angles and lengths, of places and of velocities
+            let kind = 4 * self.scene.memberships[c.link].group + u32::from(c.angular);
             if !f.in_ball {
                 relations.q[q] = Relation {
                     most: if c.angular {
@@ -324,8 +325,8 @@ impl Ode for System {
                     },
                     group: Some(kind),
                     share: SHARE_OF_LARGEST_POSITION,
-                    rate_of: None,
                     from_beginning: !c.angular,
+                    ..Relation::default()
                 };
             }
             // short steps because of a contact have to be seen in velocity
@@ -335,6 +336,7 @@ impl Ode for System {
                 group: Some(2 + kind),
                 share: SHARE_OF_LARGEST_SPEED,
                 rate_of: smooth.then_some(q),
+                is_rate: true,
                 ..Relation::default()
             };
         }

@@ -232,6 +232,8 @@ pub(super) struct Accountant {
     due: f64,
     /// the energy at the end of the last step, where motions move something
     last: Option<(f64, [f64; 2])>,
+    /// the works of the last step without their signs: what went there and back
+    moved: f64,
 }
 
 impl Accountant {
@@ -249,8 +251,9 @@ impl Accountant {
         if system.does_work() {
             let of_step = self.works(flow, system, method, (step, start));
             (flow.works.iter_mut().zip(of_step)).for_each(|(work, more)| *work += more);
-            // what forces hold between two looks is part of all energy, too
-            flow.scale = flow.works.iter().fold(flow.scale, |m, w| m.max(w.abs()));
+            // what forces hold between two looks, or within a step, is part of all energy, too
+            let works = flow.works.iter().fold(self.moved, |m, w| m.max(w.abs()));
+            flow.scale = flow.scale.max(works);
         }
         if step.t1 < self.due && step.t1 < end {
             return None;
@@ -276,24 +279,17 @@ impl Accountant {
         let turns = turns_within(system, ends);
         let few = matches!(turns, Turns::Few);
         let mut of_step = [0.0; 4];
+        self.moved = 0.0;
         let visited = match turns {
             Turns::Few => {
-                let visit = &mut weigher(ends, &mut of_step, true);
+                let visit = &mut weigher(&mut of_step, &mut self.moved);
                 method.quadrature(system, ends, &mut self.work, visit)
             }
-            Turns::Many(times) => self.by_kronrod(system, method, (ends, &times), &mut of_step),
+            Turns::Many(times) => self.by_kronrod(system, method, (ends[0], &times), &mut of_step),
             Turns::Unknown => Err(NOT_KNOWN),
         };
         if visited.is_err() {
             return [f64::NAN; 4];
-        }
-        // a node on another branch: others are further within the step
-        if of_step.iter().any(|work| work.is_nan()) {
-            of_step = [0.0; 4];
-            let visited = self.by_kronrod(system, method, (ends, &[ends[1]]), &mut of_step);
-            if visited.is_err() {
-                return [f64::NAN; 4];
-            }
         }
         if !few || system.scene.motions.is_empty() {
             return of_step;
@@ -312,7 +308,8 @@ impl Accountant {
         let off = |works: &Powers| (change - works.iter().sum::<f64>()).abs();
         if off(&of_step) > TOLD_ENERGY / LOOKS * flow.scale {
             let mut closer = [0.0; 4];
-            let visited = self.by_kronrod(system, method, (ends, &[ends[1]]), &mut closer);
+            self.moved = 0.0;
+            let visited = self.by_kronrod(system, method, (ends[0], &[ends[1]]), &mut closer);
             if visited.is_ok() && off(&closer) < off(&of_step) {
                 return closer;
             }
@@ -325,31 +322,26 @@ impl Accountant {
         &mut self,
         system: &mut System,
         method: &mut dyn Method<System>,
-        (ends, times): ([f64; 2], &[f64]),
+        (mut from, times): (f64, &[f64]),
         works: &mut Powers,
     ) -> Result<(), Failure> {
         let rule = kronrod();
-        let mut from = ends[0];
         times.iter().try_for_each(|&to| {
             let piece = [std::mem::replace(&mut from, to), to];
-            let mut visit = weigher(ends, works, false);
-            over_interpolant(method, system, piece, &rule, &mut self.work, &mut visit)
+            let visit = &mut weigher(works, &mut self.moved);
+            over_interpolant(method, system, piece, &rule, &mut self.work, visit)
         })
     }
 }
 
-/// Returns what adds the powers at a node within a step to works; no numbers where `strictly` they
-/// are not those of the branches of the step.
-fn weigher(
-    ends: [f64; 2],
-    works: &mut Powers,
-    strictly: bool,
-) -> impl FnMut(&mut System, Node<'_>) {
+/// Returns what adds the powers at a node within a step to works, and without their signs to what
+/// has moved.
+fn weigher(works: &mut Powers, moved: &mut f64) -> impl FnMut(&mut System, Node<'_>) {
     move |system, node| {
-        let powers = system.powers(ends, node, strictly);
-        let powers = powers.unwrap_or([f64::NAN; 4]);
+        let powers = system.powers(node).unwrap_or([f64::NAN; 4]);
         for (work, power) in works.iter_mut().zip(powers) {
             *work += node.weight * power;
+            *moved += node.weight * power.abs();
         }
     }
 }
