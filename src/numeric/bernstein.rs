@@ -14,7 +14,7 @@
 //! Source: Farouki, The Bernstein polynomial basis: a centennial retrospective, Computer Aided
 //! Geometric Design 29 (2012).
 
-use crate::scalar::Interval;
+use crate::scalar::{Interval, Scalar};
 use std::sync::LazyLock;
 
 /// Degree of the polynomials: that of the interpolant of DOP853, the highest.
@@ -46,7 +46,7 @@ impl Courses {
         // dense at the ends, so that rounding is not magnified
         std::array::from_fn(|i| {
             let angle = std::f64::consts::PI * i as f64 / DEGREE as f64;
-            0.5 * (1.0 - crate::scalar::Scalar::cos(angle))
+            0.5 * (1.0 - Scalar::cos(angle))
         })
     }
 
@@ -70,6 +70,10 @@ impl Courses {
         let (values, h) = (&self.values, self.h);
         let (points, rates) =
             self.points[k].get_or_insert_with(|| lead_through(values.each_ref().map(|v| v[k]), h));
+        // what stands still does so in every part
+        if rates == &[0.0; DEGREE] {
+            return [points[0], 0.0].map(Interval::constant);
+        }
         let [a, b] = [from, to].map(|t| ((t - self.t0) / h).clamp(0.0, 1.0));
         [over(*points, a, b), over(*rates, a, b)]
     }
