@@ -1,7 +1,7 @@
 //! Programs that are run over bounds of what they read: of the time, of the unknowns and of their
 //! rates.
 
-use crate::expr::program::{Program, Share, Work};
+use crate::expr::program::{Program, Share};
 use crate::scalar::{Dual, Interval, Scalar};
 use crate::scene::layout::{Layout, LongRow};
 use std::collections::BTreeMap;
@@ -43,14 +43,14 @@ pub(in crate::analysis) trait Watched {
     fn unknowns_of(&mut self, k: usize) -> Vec<usize>;
 }
 
-/// The bounds over which a program is run, and room for that.
+/// The bounds over which a program is run, and what is known of it over them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bounded {
     /// what it reads, with bounds of what moves and of its rates
     row: Vec<Bounds>,
-    work: Work<Bounds>,
-    /// what single outputs need of the program, once they were asked for
-    shares: BTreeMap<usize, Share>,
+    /// all of the program, and what single outputs need of it, once they were asked for
+    all: Option<Share<Bounds>>,
+    shares: BTreeMap<usize, Share<Bounds>>,
 }
 
 impl Bounded {
@@ -94,13 +94,17 @@ impl Bounded {
 
     /// Bounds all outputs over what was taken last.
     pub fn all(&mut self, program: &Program, bounds: &mut [Bounds]) {
-        program.eval(&self.row, &mut self.work, bounds);
+        let outputs = || (0..program.n_outputs()).collect::<Vec<_>>();
+        let all = (self.all).get_or_insert_with(|| Share::of(program, &outputs()));
+        all.run(program, &self.row, bounds);
     }
 
     /// Bounds one of them.
     pub fn one(&mut self, program: &Program, k: usize) -> Bounds {
+        let mut bounds = [Bounds::constant(f64::NAN)];
         let share = share_of(&mut self.shares, program, k);
-        program.eval_share(share, &self.row, &mut self.work)
+        share.run(program, &self.row, &mut bounds);
+        bounds[0]
     }
 
     /// Returns the unknowns that one of them reads.
@@ -125,7 +129,11 @@ fn unknown_at(row: LongRow, k: usize) -> usize {
 }
 
 /// Returns what one output needs of a program.
-fn share_of<'s>(shares: &'s mut BTreeMap<usize, Share>, program: &Program, k: usize) -> &'s Share {
+fn share_of<'s>(
+    shares: &'s mut BTreeMap<usize, Share<Bounds>>,
+    program: &Program,
+    k: usize,
+) -> &'s mut Share<Bounds> {
     let share = shares.entry(k);
-    share.or_insert_with(|| program.share::<Bounds>(k))
+    share.or_insert_with(|| Share::of(program, &[k]))
 }
