@@ -138,8 +138,8 @@ pub struct Relation {
     /// the unknown whose rate it is, if its error may be judged by the change it makes to that one
     /// within a step
     pub rate_of: Option<usize>,
-    /// whether it is a rate whose typical magnitude is that of what it changes: it has the roundings
-    /// of that over a mean step
+    /// whether it is a rate whose typical magnitude is that of what it changes: it has the
+    /// roundings of that over a mean step
     pub is_rate: bool,
     /// whether its magnitude is that of its way from where it began: a coordinate that a choice of
     /// origin makes large

@@ -107,22 +107,6 @@ pub(super) struct Mark {
 }
 
 impl Instruction {
-    /// Returns the same operation with its operands and its result in other registers; not a call,
-    /// whose arguments are listed.
-    #[cfg(feature = "solver")]
-    pub(super) fn moved(self, to: u32, register: impl Fn(u32) -> u32) -> Self {
-        let [a, b, c, d] = [self.a, self.b, self.c, self.d].map(register);
-        let code = self.code;
-        Self {
-            code,
-            to,
-            a,
-            b,
-            c,
-            d,
-        }
-    }
-
     /// Returns the register of the value that a selection takes on one of its sides.
     pub(super) fn chosen(&self, side: u8) -> u32 {
         let operands = [self.a, self.b, self.c, self.d];

@@ -221,7 +221,7 @@ impl Composition<'_> {
 }
 
 /// Returns an instruction with its registers moved, its arguments behind so many others.
-fn moved(instruction: &Instruction, to: &[u32], n_lists: u32) -> Instruction {
+pub(super) fn moved(instruction: &Instruction, to: &[u32], n_lists: u32) -> Instruction {
     let at = |r: u32| to[r as usize];
     let mut moved = Instruction {
         to: at(instruction.to),

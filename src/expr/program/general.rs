@@ -1,10 +1,10 @@
 //! Programs over any number: duals, jets, intervals, values that are recorded.
 
 use super::code::Core;
-#[cfg(feature = "solver")]
-use super::code::Instruction;
 use super::expand::Expand;
 use super::run::{Program, Work};
+#[cfg(feature = "solver")]
+use super::{code::Instruction, compose::moved};
 use crate::scalar::Scalar;
 
 /// Some outputs of a program, evaluated again and again: only what reads something that has changed
@@ -62,7 +62,10 @@ impl<S: Scalar + PartialEq> Share<S> {
         }
         for instruction in &mut instructions {
             let (to, alone) = (instruction.to as usize, registers.len() as u32);
-            *instruction = instruction.moved(alone, |r| places[r as usize]);
+            *instruction = Instruction {
+                to: alone,
+                ..moved(instruction, &places, 0)
+            };
             places[to] = alone;
             registers.push(S::constant(f64::NAN));
         }
