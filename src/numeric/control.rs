@@ -11,11 +11,11 @@
 //! with the requested tolerance E, ρ = 50 roundings, and j over the unknowns of the same group as i
 //! ([`Relation`]). A coordinate that is large only because of where the origin is
 //! ([`Relation::from_beginning`]) counts as |yᵢ − yᵢ(0)|, so that moving a whole model changes
-//! nothing, and as ρ |yᵢ(0)| / E at least. A rate ([`Relation::is_rate`]) has the roundings of what
-//! it changes over the mean step h so far, ρ typicalᵢ / (E h). So nothing is permitted absolutely
-//! but rounding: a motion of a nanometre is as exact as one of a metre, and no request is finer than
-//! digits are. (A floor of a thousandth of the typical magnitude took one per cent fewer evaluations
-//! on the references, and lost what moves by less than that times the request.)
+//! nothing, and as ρ |yᵢ(0)| / E at least. A rate ([`Relation::is_rate`]) has the roundings of
+//! what it changes over the mean step h so far, ρ typicalᵢ / (E h). So nothing is permitted
+//! absolutely but rounding: a motion of a nanometre is as exact as one of a metre, and no request
+//! is finer than digits are. (A floor of a thousandth of the typical magnitude took one per cent
+//! fewer evaluations on the references, and lost what moves by less than that times the request.)
 //!
 //! Results are judged column by column against the largest value of the column, so the largest
 //! magnitude so far is the right measure: an oscillation through zero costs nothing there. A

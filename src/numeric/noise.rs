@@ -300,7 +300,11 @@ pub(crate) fn along<P: Ode + ?Sized>(
     };
     let mut weights = Weights::new(y.len(), &options);
     weights.reset(|typical| problem.typical(typical));
-    weights.relate(|relations| problem.relations(relations));
+    weights.relate(|relations| {
+        problem.relations(relations);
+        // these states are no steps
+        relations.iter_mut().for_each(|r| r.is_rate = false);
+    });
     states.iter().for_each(|(t, y)| weights.see(*t, y));
     let mut noise = Noise::new(y.len());
     let (mut f, mut argument, mut rate) = (y.to_vec(), y.to_vec(), y.to_vec());
