@@ -86,7 +86,6 @@ impl Options {
             h_min: self.h_min.max(SHORTEST_STEP * duration),
             max_newton: self.max_newton.unwrap_or(10),
             max_steps,
-            ..numeric::Options::default()
         }
     }
 
