@@ -117,9 +117,9 @@ impl Scene {
         b.counted();
         b.read_zero();
         if c.errors.is_empty() {
+            b.scene.memberships = b.scene.find_memberships();
             b.loops(&mut c);
             b.part_downstream();
-            b.scene.memberships = b.scene.find_memberships();
             b.natural_sizes();
         }
         if c.errors.is_empty() {

@@ -9,6 +9,9 @@ use crate::numeric::connected::{SparseRow, connected};
 pub struct Membership {
     /// the size of its mechanism, which rounds its lengths
     pub size: f64,
+    /// how far its mechanism reaches from the origin, at least its size: against it lengths in
+    /// ground are rounded
+    pub reach: f64,
     /// number of the mechanisms that forces join with its own
     pub group: u32,
 }
@@ -20,7 +23,7 @@ impl Scene {
         connected(&self.joined_by_constraints(), self.links.len()).len()
     }
 
-    /// Finds where each link belongs   (n_links)
+    /// Finds where each link belongs, once constraints and forces are known   (n_links)
     pub(super) fn find_memberships(&self) -> Vec<Membership> {
         let mut of = vec![Membership::default(); self.links.len()];
         let mut rows = self.joined_by_constraints();
@@ -37,10 +40,14 @@ impl Scene {
         };
         let parts = of_blocks(&mut self.parts.iter().map(|part| part.link));
         let markers = of_blocks(&mut self.markers.iter().map(|marker| marker.link));
-        let sizes: Vec<f64> = (parts.iter().zip(&markers))
-            .map(|(parts, markers)| self.size_of(parts, markers))
+        let sizes: Vec<[f64; 2]> = (parts.iter().zip(&markers))
+            .map(|(parts, markers)| {
+                let size = self.size_of(parts, markers);
+                let places = markers.iter().map(|&m| self.drawn(m).position.norm());
+                [size, places.filter(|x| x.is_finite()).fold(size, f64::max)]
+            })
             .collect();
-        (of.iter_mut().zip(block_of)).for_each(|(of, k)| of.size = sizes[k]);
+        (of.iter_mut().zip(block_of)).for_each(|(of, k)| [of.size, of.reach] = sizes[k]);
         rows.extend(self.forces.iter().map(|force| {
             let nodes = match &force.law {
                 ForceLaw::Nodal { markers, .. } => &markers[..],

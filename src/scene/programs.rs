@@ -486,13 +486,13 @@ pub fn rate<S: Scalar>(at: &Equations<'_, S>) -> Vec<S> {
     out
 }
 
-/// Weight of a coordinate's change in a projection: angles count as such, lengths against the size
-/// of the mechanism.
+/// Weight of a coordinate's change in a projection: angles count as such, lengths against the reach
+/// of its mechanism.
 pub fn weights(scene: &Scene) -> Vec<f64> {
     let mut w = vec![1.0; scene.layout.n_v];
     for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
         if let (Some(v), false) = (f.v, c.angular) {
-            w[v] = scene.length * scene.length;
+            w[v] = scene.memberships[f.link].reach.powi(2);
         }
     }
     w

@@ -7,10 +7,19 @@ use crate::space::Vec3;
 const EXTENT_OF_ROUNDING: f64 = 1e-13;
 
 impl Scene {
-    /// Returns the residual of a row that counts as one: the size of the mechanism for lengths, a
+    /// Returns the residual of a row that counts as one: the reach of its mechanism for lengths, a
     /// radian for angles.
     pub fn row_scale(&self, r: usize) -> f64 {
-        self.row_scale_at(r, self.length)
+        let link = match &self.rows[r].kind {
+            RowKind::Markers { i, j, .. } => self.markers[*i].link.or(self.markers[*j].link),
+            RowKind::Displacements(sum) => (sum.terms.iter())
+                .find_map(|(_, d)| self.markers[d.i].link.or(self.markers[d.j].link)),
+            RowKind::Formula { .. } | RowKind::Cam { .. } => None,
+        };
+        let reach = link
+            .and_then(|l| self.memberships.get(l))
+            .map_or(self.length, |of| of.reach);
+        self.row_scale_at(r, reach)
     }
 
     /// Returns the same for a mechanism of this size.
