@@ -1,7 +1,7 @@
 //! Mechanisms, links that constraints join, and the groups of these that forces join.
 
 use super::forces::ForceLaw;
-use super::{RowKind, Scene};
+use super::{ConstraintElement, RowKind, Scene};
 use crate::numeric::connected::{SparseRow, connected};
 
 /// Where a link belongs.
@@ -41,11 +41,7 @@ impl Scene {
         let parts = of_blocks(&mut self.parts.iter().map(|part| part.link));
         let markers = of_blocks(&mut self.markers.iter().map(|marker| marker.link));
         let sizes: Vec<[f64; 2]> = (parts.iter().zip(&markers))
-            .map(|(parts, markers)| {
-                let size = self.size_of(parts, markers);
-                let places = markers.iter().map(|&m| self.drawn(m).position.norm());
-                [size, places.filter(|x| x.is_finite()).fold(size, f64::max)]
-            })
+            .map(|(parts, markers)| self.size_and_reach(parts, markers))
             .collect();
         (of.iter_mut().zip(block_of)).for_each(|(of, k)| [of.size, of.reach] = sizes[k]);
         rows.extend(self.forces.iter().map(|force| {
@@ -65,15 +61,21 @@ impl Scene {
         of
     }
 
+    /// Returns the links that a constraint joins.
+    pub(crate) fn joined_by(&self, element: &ConstraintElement) -> SparseRow {
+        let pair = element.markers.into_iter().flat_map(|(i, j)| [i, j]);
+        let markers = pair.chain(element.acts_on.iter().copied());
+        row(&mut markers.filter_map(|m| self.markers[m].link))
+    }
+
     /// Returns the links that stand together in a constraint or carry each other.
-    fn joined_by_constraints(&self) -> Vec<SparseRow> {
+    pub(crate) fn joined_by_constraints(&self) -> Vec<SparseRow> {
         let links = self.links.iter().enumerate();
         let carried = links.map(|(l, link)| row(&mut [Some(l), link.parent].into_iter().flatten()));
-        let constraints = self.constraints.iter().map(|element| {
-            let pair = element.markers.into_iter().flat_map(|(i, j)| [i, j]);
-            let markers = pair.chain(element.acts_on.iter().copied());
-            row(&mut markers.filter_map(|m| self.markers[m].link))
-        });
+        let constraints = self
+            .constraints
+            .iter()
+            .map(|element| self.joined_by(element));
         let sums = self.rows.iter().filter_map(|r| match &r.kind {
             RowKind::Displacements(sum) => Some(sum),
             _ => None,

@@ -14,7 +14,11 @@ impl Scene {
             RowKind::Markers { i, j, .. } => self.markers[*i].link.or(self.markers[*j].link),
             RowKind::Displacements(sum) => (sum.terms.iter())
                 .find_map(|(_, d)| self.markers[d.i].link.or(self.markers[d.j].link)),
-            RowKind::Formula { .. } | RowKind::Cam { .. } => None,
+            RowKind::Cam { cam, .. } => {
+                let cam = &self.cams[*cam];
+                self.markers[cam.i].link.or(self.markers[cam.j].link)
+            }
+            RowKind::Formula { .. } => None,
         };
         let reach = link
             .and_then(|l| self.memberships.get(l))
@@ -55,8 +59,8 @@ impl Scene {
 
     /// Returns the size of a mechanism of these parts and markers, as the dataset places it: its
     /// diameter, else its largest radius of gyration, else how far it is from the origin; 1 where
-    /// it has none of these.
-    pub fn size_of(&self, parts: &[usize], markers: &[usize]) -> f64 {
+    /// it has none of these; and how far it reaches from the origin, at least its size.
+    pub fn size_and_reach(&self, parts: &[usize], markers: &[usize]) -> [f64; 2] {
         let diameter = self.diameter(markers.iter().copied());
         let gyration = parts.iter().filter_map(|&p| {
             let link = &self.links[self.parts[p].link?];
@@ -72,7 +76,9 @@ impl Scene {
             largest(&mut { reach }),
             1.0,
         ];
-        sizes.into_iter().find(|&x| x > 0.0).unwrap_or(1.0)
+        let size = sizes.into_iter().find(|&x| x > 0.0).unwrap_or(1.0);
+        let places = markers.iter().map(|&m| self.drawn(m).position.norm());
+        [size, largest(&mut { places }).max(size)]
     }
 
     /// Returns the displacement of a motion that counts as one: a radian, or the size of the

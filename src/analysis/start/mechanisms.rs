@@ -42,26 +42,17 @@ pub(super) fn mechanisms<'g>(
         }
     }
     let one = |l: usize| (l, 1.0);
-    let carried = scene.links.iter().enumerate().map(|(l, link)| {
-        let both = [Some(l), link.parent].into_iter().flatten();
-        both.map(one).collect::<SparseRow>()
-    });
-    let mut ties: Vec<SparseRow> = carried.collect();
+    let mut ties = scene.joined_by_constraints();
     let of_row = |row: &SparseRow| row.iter().map(|&(v, _)| one(link_of[v])).collect();
-    let n_links = ties.len();
+    let first = ties.len();
     ties.extend(gradients.map(of_row));
     // a slope that is zero here need not stay so
     for element in &scene.constraints {
-        let pair = element.markers.into_iter().flat_map(|(i, j)| [i, j]);
-        let markers = pair.chain(element.acts_on.iter().copied());
-        let links = markers.filter_map(|m| scene.markers[m].link);
-        let links: SparseRow = links.map(one).collect();
         for r in element.rows.clone() {
-            ties[n_links + r].extend_from_slice(&links);
+            ties[first + r].extend(scene.joined_by(element));
         }
-        ties.push(links);
     }
-    let n_equations = ties.len() - n_links - scene.constraints.len();
+    let n_links = scene.links.len();
     let mut all: Vec<Mechanism> = Vec::new();
     let mut own = vec![None; n_links];
     for block in connected(&ties, n_links) {
@@ -69,8 +60,8 @@ pub(super) fn mechanisms<'g>(
             continue;
         }
         block.columns.iter().for_each(|&l| own[l] = Some(all.len()));
-        let equations = block.rows.iter().filter_map(|r| r.checked_sub(n_links));
-        let equations: Vec<usize> = equations.filter(|&k| k < n_equations).collect();
+        let equations = block.rows.iter().filter_map(|r| r.checked_sub(first));
+        let equations: Vec<usize> = equations.collect();
         let rows = equations.iter().copied().filter(|&r| r < scene.rows.len());
         all.push(Mechanism {
             rows: rows.collect(),
@@ -96,11 +87,8 @@ pub(super) fn mechanisms<'g>(
         }
     }
     for (mechanism, markers) in all.iter_mut().zip(markers) {
-        let size = scene.size_of(&mechanism.parts, &markers);
-        mechanism.size = size;
-        mechanism.reach = (markers.iter().map(|&m| scene.drawn(m).position.norm()))
-            .filter(|x| x.is_finite())
-            .fold(size, f64::max);
+        let [size, reach] = scene.size_and_reach(&mechanism.parts, &markers);
+        (mechanism.size, mechanism.reach) = (size, reach);
         let unit = |&v: &usize| if turns[v] { 1.0 } else { size };
         mechanism.units = mechanism.velocities.iter().map(unit).collect();
     }

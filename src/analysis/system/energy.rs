@@ -138,13 +138,14 @@ impl System {
             }
             let mut mean = [0.0; 4];
             let between = branches.between(&self.numbers, &vec![1.0; node.y.len()]);
+            let has_any = !between.is_empty();
             for mut branch in between {
                 branches.exchange_sides(&mut branch.sides);
                 let powers = held.run(branches, &self.numbers, vdot);
                 branches.exchange_sides(&mut branch.sides);
                 (mean.iter_mut().zip(powers?)).for_each(|(m, power)| *m += branch.part * power);
             }
-            Some(mean)
+            has_any.then_some(mean)
         });
         self.numbers.copy_from_slice(&energy.kept);
         self.energy = Some(energy);
