@@ -92,6 +92,7 @@ pub fn run(args: &Args) -> Outcome {
         true => run::script_with(&file, dataset, asked)?,
         false => run::alone_with(
             &Single {
+                variables: &[],
                 model: &file,
                 dataset,
                 span: SpanArgs {

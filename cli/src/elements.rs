@@ -78,6 +78,7 @@ pub fn run(args: &Args) -> Outcome {
     }
     if let Some(out) = &args.out {
         args.writing.check([out])?;
+        run::refuse_view(&reading, "is changed")?;
         for (element, name) in &args.rename {
             let id = reading.model.find_element(element)?;
             reading = renamed(&reading, id, name)?;

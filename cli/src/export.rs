@@ -124,6 +124,7 @@ pub fn run(args: &Args) -> Outcome {
 impl Args {
     fn single(&self) -> Single<'_> {
         Single {
+            variables: &[],
             model: &self.model,
             dataset: None,
             span: self.span,

@@ -38,6 +38,7 @@ pub struct Args {
 /// When it cannot be read, has a statement that was not understood, or cannot be written.
 pub fn run(args: &Args) -> Outcome {
     let reading = dataset::read(&args.file).map_err(super::check::failure)?;
+    super::run::refuse_view(&reading, "is formatted")?;
     refuse_mistakes(&reading)?;
     let text = reading.dataset.formatted();
     let again = dataset::read_text(&text);

@@ -107,6 +107,7 @@ impl Source {
             let SpanArgs { end, steps, kind } = self.span;
             let kind = kind.or(end.is_none().then_some(initial));
             run::alone(&Single {
+                variables: &[],
                 model: &self.file,
                 dataset: None,
                 span: SpanArgs {

@@ -101,6 +101,7 @@ pub fn run(args: &Args) -> Outcome {
         run::script(&args.model, args.dataset.as_deref())?
     } else {
         run::alone(&Single {
+            variables: &[],
             model: &args.model,
             dataset: args.dataset.as_deref(),
             span: args.span,

@@ -38,8 +38,8 @@ Examples:
   cognate run crash.adm --loads braking,gravity --end 2
   cognate run pendulum.acf --error 1e-8 --method DOP853 --out results --json")]
 pub struct Args {
-    /// Command file (.acf), log of an earlier run whose commands are obeyed again (.msg), or
-    /// dataset (.adm); - reads a dataset from standard input
+    /// Command file (.acf), log of an earlier run whose commands are obeyed again (.msg), dataset
+    /// (.adm), or command file of Adams View (.cmd); - reads a dataset from standard input
     #[arg(value_parser = piped::model())]
     model: PathBuf,
     /// Dataset that the commands are for, where it is not the one that they name
@@ -55,6 +55,10 @@ pub struct Args {
     /// kept in MODEL.toml for the next runs [default: those of the last choice, else all]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     loads: Vec<String>,
+    /// Value of a design variable of a command file of Adams View, as .model.DV_1=2.5 (repeatable);
+    /// what depends on it is computed anew
+    #[arg(long, value_name = "NAME=VALUE", value_parser = variable)]
+    set: Vec<(String, f64)>,
     /// Folder that results are written to, or - for the table alone on standard output, as .csv or
     /// by json:- and so on [default: here]
     #[arg(short = 'o', long, value_name = "DIR", value_parser = piped::run_folder())]
@@ -262,6 +266,11 @@ fn job(args: &Args, is_command: bool) -> Result<Job, Failure> {
         false => Asked::New(&args.loads),
     };
     if is_command {
+        if !args.set.is_empty() {
+            let what =
+                "--set NAME=VALUE sets design variables of a command file of Adams View (.cmd)";
+            return Err(Failure::usage(what));
+        }
         args.span.refuse_beside(&args.model)?;
         let (dataset, trusting) = (args.dataset.as_deref(), args.output.trust_paths);
         return script_from(&args.model, dataset, asked, trusting);
@@ -270,6 +279,7 @@ fn job(args: &Args, is_command: bool) -> Result<Job, Failure> {
         model: &args.model,
         dataset: args.dataset.as_deref(),
         span: args.span,
+        variables: &args.set,
     };
     alone_with(&single, asked)
 }
@@ -510,6 +520,8 @@ pub(super) struct Single<'a> {
     pub dataset: Option<&'a Path>,
     /// its kind, its end and its output steps
     pub span: SpanArgs,
+    /// values of design variables
+    pub variables: &'a [(String, f64)],
 }
 
 /// Prepares a dataset with one simulation given by options, else by its set-up, and the loads of
@@ -546,15 +558,24 @@ pub(super) fn standing_with(args: &Single<'_>, asked: Asked<'_>) -> Result<Job, 
         let what = "a second file is the dataset of a command file (.acf) or of a log (.msg)";
         return Err(Failure::usage(what));
     }
-    let (reading, read_seconds, Prepared { setup, loads }) = timed_read(args.model, asked)?;
-    let steps = single_simulation(args, &setup).unwrap_or_default();
+    let (reading, read_seconds, Prepared { setup, loads }) =
+        timed_read_with(args.model, asked, args.variables)?;
+    let mut steps = single_simulation(args, &setup).unwrap_or_default();
+    let mut remarks = Vec::new();
+    if let Some(commands) = reading.commands.as_ref().filter(|_| steps.is_empty()) {
+        // what a command file of Adams View asks for
+        let script =
+            Script::from_text(commands).map_err(|e| Failure::in_files(Exit::Input, e.into()))?;
+        steps = script.steps;
+        remarks = script.diagnostics;
+    }
     Ok(Job {
         reading,
         base: stem(args.model),
         steps,
         setup,
         loads,
-        remarks: Vec::new(),
+        remarks,
         read_seconds,
     })
 }
@@ -593,7 +614,16 @@ pub(super) fn timed_read(
     path: &Path,
     asked: Asked<'_>,
 ) -> Result<(Reading, f64, Prepared), Failure> {
-    let (mut reading, seconds) = read_bare(path)?;
+    timed_read_with(path, asked, &[])
+}
+
+/// Does the same with values for design variables of a command file of Adams View.
+pub(super) fn timed_read_with(
+    path: &Path,
+    asked: Asked<'_>,
+    variables: &[(String, f64)],
+) -> Result<(Reading, f64, Prepared), Failure> {
+    let (mut reading, seconds) = read_bare_with(path, variables)?;
     let prepared = setup::prepare(path, &mut reading.model, asked)?;
     Ok((reading, seconds, prepared))
 }
@@ -601,10 +631,18 @@ pub(super) fn timed_read(
 /// Reads a dataset alone, whatever stands beside it; also returns the time that its bytes took, in
 /// s.
 pub(super) fn read_bare(path: &Path) -> Result<(Reading, f64), Failure> {
+    read_bare_with(path, &[])
+}
+
+fn read_bare_with(path: &Path, variables: &[(String, f64)]) -> Result<(Reading, f64), Failure> {
     let clock = Instant::now();
     let source = dataset::open(path).map_err(|e| Failure::in_files(Exit::Input, e.into()))?;
     let seconds = clock.elapsed().as_secs_f64();
-    let reading = dataset::read_source(source);
+    let reading = dataset::read_with(source, &variables.iter().cloned().collect());
+    if !variables.is_empty() && !reading.is_view() {
+        let what = "--set NAME=VALUE sets design variables of a command file of Adams View (.cmd)";
+        return Err(Failure::usage(what));
+    }
     if reading.failed() {
         let errors = reading
             .diagnostics
@@ -613,6 +651,40 @@ pub(super) fn read_bare(path: &Path) -> Result<(Reading, f64), Failure> {
         return Err(Failure::in_files(Exit::Input, errors.collect()));
     }
     Ok((reading, seconds))
+}
+
+/// Refuses what only datasets can have done to them for a command file of Adams View.
+pub(super) fn refuse_view(reading: &Reading, what: &str) -> Result<(), Failure> {
+    if !reading.is_view() {
+        return Ok(());
+    }
+    let file = reading.dataset.source.file.clone().unwrap_or_default();
+    let d = Diagnostic::error(
+        "view_is_left",
+        format!("{file}: only a dataset {what}; a command file of Adams View stays as it is"),
+    );
+    let written = PathBuf::from(&file).with_extension("adm");
+    let help = format!(
+        "cognate convert {file} {} writes the dataset",
+        written.display()
+    );
+    Err(Failure {
+        exit: Exit::Usage,
+        ..Failure::from(d.help(help))
+    })
+}
+
+/// Reads `.model.DV_1=2.5`: a design variable of a command file of Adams View, and its value.
+pub(super) fn variable(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("it is NAME=NUMBER")?;
+    let number: f64 = value
+        .trim()
+        .parse()
+        .map_err(|_| format!("`{value}` is no number"))?;
+    match number.is_finite() {
+        true => Ok((name.trim().to_owned(), number)),
+        false => Err(format!("`{value}` is no finite number")),
+    }
 }
 
 /// Returns whether a file holds commands: a command file, or the log of a run.

@@ -176,6 +176,7 @@ fn open(args: &Args) -> Result<(Sweep, String), Failure> {
         run::script(&args.model, None)?
     } else {
         run::alone(&Single {
+            variables: &[],
             model: &args.model,
             dataset: None,
             span: args.span,

@@ -25,6 +25,7 @@ pub(crate) mod statement;
 pub(crate) mod surface;
 pub(crate) mod syntax;
 pub(crate) mod value;
+mod view;
 pub(crate) mod write;
 
 pub use syntax::{Encoding, Source};
@@ -95,9 +96,16 @@ pub struct Reading {
     pub model: Model,
     /// errors, warnings and notes in the order of the file
     pub diagnostics: Vec<Diagnostic>,
+    /// what a command file of Adams View asks the solver for, as commands of it
+    pub commands: Option<String>,
 }
 
 impl Reading {
+    /// Returns whether it was read from a command file of Adams View.
+    pub fn is_view(&self) -> bool {
+        view::is_view(self.dataset.source.file.as_deref())
+    }
+
     /// Returns true if there is any error.
     pub fn failed(&self) -> bool {
         self.diagnostics
@@ -147,8 +155,18 @@ fn load(path: &Path) -> Result<Vec<u8>, Error> {
     )))
 }
 
-/// Reads a dataset.
+/// Reads a dataset, or by its name (`.cmd`) a command file of Adams View.
 pub fn read_source(source: Source) -> Reading {
+    read_with(source, &BTreeMap::new())
+}
+
+/// Does the same; `variables`: values that design variables of a command file of Adams View have
+/// instead of those of the file, by their full names (`.model.DV_1`). Whatever depends on them is
+/// computed anew.
+pub fn read_with(source: Source, variables: &BTreeMap<String, f64>) -> Reading {
+    if view::is_view(source.file.as_deref()) {
+        return view::read(source, variables);
+    }
     let mut reading = Reading::default();
     let out = &mut reading.diagnostics;
     let syntax = syntax::dataset(&source, out);

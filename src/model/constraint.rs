@@ -26,6 +26,8 @@ pub struct Joint {
     pub pd: Option<f64>,
     /// FRICTION of datasets older than the statement FRICTION: ON, OFF, PRELOAD_ONLY; not solved
     pub friction: Option<String>,
+    /// its initial displacement and velocity were given by name, so that their order says nothing
+    pub has_named_ic: bool,
 }
 
 impl Element for Joint {

@@ -232,6 +232,7 @@ impl Loaded {
     fn up_to(&self, end: f64, steps: Option<usize>) -> Result<Vec<Step>, Failure> {
         let before = self.steps.iter().take_while(|step| !is_simulation(step));
         let single = run::alone_step(&Single {
+            variables: &[],
             model: &self.file,
             dataset: None,
             span: SpanArgs {

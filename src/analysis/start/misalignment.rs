@@ -99,8 +99,8 @@ pub fn orders(scene: &Scene, model: &Model) -> Vec<ConditionWarning> {
             let [Some(displacement), Some(velocity)] = given else {
                 continue;
             };
-            if joint.place.name.is_some() {
-                if displacement != 0.0 && velocity != 0.0 {
+            if joint.place.name.is_some() || joint.has_named_ic {
+                if displacement != 0.0 && velocity != 0.0 && !joint.has_named_ic {
                     of_view.push((element, [velocity, displacement]));
                 }
                 continue;

@@ -159,7 +159,8 @@ pub(super) fn initial_conditions_say_what_is_first(model: &Model, out: &mut Out)
             .into_iter()
             .find(|&pair| both(pair))
     };
-    let named = model.joints.iter().filter(|(_, j)| j.place.name.is_some());
+    let by_order = |j: &Joint| j.place.name.is_some() && !j.has_named_ic;
+    let named = model.joints.iter().filter(|(_, j)| by_order(j));
     let mut found = named.filter_map(|(&id, j)| Some((id, j, pairs(j)?)));
     if let Some((id, joint, [Some(displacement), Some(velocity)])) = found.next() {
         let message = format!(
