@@ -186,7 +186,7 @@ impl Maker<'_> {
                 Line {
                     displacement: format!("az({i},{j})"),
                     rate: format!("wz({i},{j},{j})"),
-                    free: self.free(k, x[1].atan2(x[0]), unit),
+                    free: self.free_displacement(k, x[1].atan2(x[0]), unit),
                     unit,
                 }
             }
@@ -197,7 +197,7 @@ impl Maker<'_> {
                 Line {
                     displacement: format!("dm({i},{j})"),
                     rate: format!("vr({i},{j})"),
-                    free: self.free(k, drawn, 1.0),
+                    free: self.free_displacement(k, drawn, 1.0),
                     unit: 1.0,
                 }
             }
@@ -238,7 +238,7 @@ impl Maker<'_> {
     }
 
     /// Returns the displacement at which a spring pushes with its preload.
-    fn free(&self, k: usize, drawn: f64, unit: f64) -> f64 {
+    fn free_displacement(&self, k: usize, drawn: f64, unit: f64) -> f64 {
         let design =
             self.field_text(k, "free_length_mode") + &self.field_text(k, "free_angle_mode");
         let stated = self.field_number(k, "free_length");

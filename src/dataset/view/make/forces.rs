@@ -381,7 +381,7 @@ impl Maker<'_> {
         let row = rows
             .copied()
             .find(|row| row.kind() == Some(ElementKind::Graphics))?;
-        let id = self.next(ElementKind::Graphics);
+        let id = self.behind(ElementKind::Graphics);
         let head = self.db.objects[shape].head;
         let name = self.db.short_name(shape);
         let mut draft = self.begun(row, Some(id.number), Some(name), head, Some(shape));
@@ -423,7 +423,7 @@ impl Maker<'_> {
         let (Some(marker), Some(row)) = (marker, row) else {
             return Vec::new();
         };
-        let id = self.next(ElementKind::Graphics);
+        let id = self.behind(ElementKind::Graphics);
         let mut draft = self.begun(row, Some(id.number), Some(short.clone()), head, None);
         draft.flag("EXTERNAL");
         draft.give("RM", Want::Object(marker), head);
@@ -486,7 +486,7 @@ impl Maker<'_> {
                 R,
                 head,
             )?;
-            let id = self.next(ElementKind::Graphics);
+            let id = self.behind(ElementKind::Graphics);
             let row = crate::dataset::statement::STATEMENTS.iter();
             let row = *row
                 .clone()
@@ -527,7 +527,7 @@ impl Maker<'_> {
         head: crate::diagnostic::Span,
     ) -> Option<ElementId> {
         let owner = *self.ids.get(&part)?;
-        let id = self.next(ElementKind::Marker);
+        let id = self.behind(ElementKind::Marker);
         let rows = crate::dataset::statement::STATEMENTS.iter();
         let row = *rows
             .clone()

@@ -21,6 +21,7 @@ mod measures;
 mod outputs;
 
 use super::database::Database;
+use crate::arrange::Arrange;
 use crate::dataset::row::{Given, Record, Statement};
 use crate::dataset::statement::STATEMENTS;
 use crate::dataset::syntax::Source;
@@ -244,8 +245,9 @@ impl<'a> Maker<'a> {
         }
     }
 
-    /// Gives every element its number: that of the file, else the first that is free, as what has
-    /// none in a saved file was made between others. Parts and markers follow all others.
+    /// Gives every element its number: that of the file, else one behind all others. Measures and
+    /// what user-defined elements are made of have none in any file: they take the first that are
+    /// free, as they were made between the others.
     fn number(&mut self) {
         let mut without = Vec::new();
         for k in 0..self.db.objects.len() {
@@ -264,47 +266,55 @@ impl<'a> Maker<'a> {
                     }
                 }
                 _ if self.db.objects[k].is_idle => {}
-                _ => without.push((k, kind)),
+                _ => without.push((self.is_inner(k), object.head.start, k, kind)),
             }
         }
-        let grounds = without
-            .iter()
-            .filter(|(k, _)| self.db.objects[*k].is_ground);
-        for (k, kind) in grounds.copied().collect::<Vec<_>>() {
+        let grounds = without.iter().filter(|of| self.db.objects[of.2].is_ground);
+        for (_, _, k, kind) in grounds.copied().collect::<Vec<_>>() {
             let id = kind.id(1);
             let id = if self.taken.insert(id) {
                 id
             } else {
-                self.next(kind)
+                self.behind(kind)
             };
             self.ids.insert(k, id);
         }
-        for (k, kind) in without {
+        without.arrange_by_key(|(is_inner, at, ..)| (*is_inner, *at));
+        for (is_inner, _, k, kind) in without {
             if !self.ids.contains_key(&k) {
-                let id = self.next(kind);
+                let id = if is_inner {
+                    self.free(kind)
+                } else {
+                    self.behind(kind)
+                };
                 self.ids.insert(k, id);
             }
         }
     }
 
-    /// Returns a new number of a kind.
-    pub fn next(&mut self, kind: ElementKind) -> ElementId {
-        let first = kind.id(1);
-        let of_kind = self.taken.range(first..=kind.id(u32::MAX));
-        let number = match kind {
-            ElementKind::Part | ElementKind::Marker => {
-                of_kind.last().map_or(1, |id| id.number.saturating_add(1))
-            }
-            _ => {
-                let from = self.free_from.get(&kind).copied().unwrap_or(1);
-                let mut number = from;
-                while self.taken.contains(&kind.id(number)) && number < u32::MAX {
-                    number += 1;
-                }
-                self.free_from.insert(kind, number);
-                number
-            }
-        };
+    /// Returns whether an object never has a number in a file.
+    fn is_inner(&self, k: usize) -> bool {
+        let object = &self.db.objects[k];
+        let parent = Database::parent(&object.name).and_then(|parent| self.db.find(parent));
+        let in_element = parent.is_some_and(|p| self.db.objects[p].kind == "ude instance");
+        in_element || object.kind.starts_with("measure")
+    }
+
+    /// Returns the number behind all others of a kind.
+    pub fn behind(&mut self, kind: ElementKind) -> ElementId {
+        let last = self.taken.range(kind.id(1)..=kind.id(u32::MAX)).next_back();
+        let id = kind.id(last.map_or(1, |id| id.number.saturating_add(1)));
+        self.taken.insert(id);
+        id
+    }
+
+    /// Returns the first free number of a kind.
+    fn free(&mut self, kind: ElementKind) -> ElementId {
+        let mut number = self.free_from.get(&kind).copied().unwrap_or(1);
+        while self.taken.contains(&kind.id(number)) && number < u32::MAX {
+            number += 1;
+        }
+        self.free_from.insert(kind, number);
         let id = kind.id(number);
         self.taken.insert(id);
         id

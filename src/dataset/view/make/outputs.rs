@@ -174,7 +174,7 @@ impl Maker<'_> {
                 false => "F".to_owned(),
             };
             let letters: Vec<String> = pattern.iter().map(letter).collect();
-            if !letters.is_empty() {
+            if letters.iter().any(|letter| letter == "T") {
                 let span = self.db.span(k, "pattern_for_jacobian");
                 draft.give("PATTERN", Want::Words(letters), span);
             }
