@@ -3,7 +3,8 @@
 //! given.
 
 use super::assemble::{
-    DEPENDENT, EMPTY, directions, least_change, numbers, rank_while, rows_at, strengths,
+    DEPENDENT, EMPTY, clear_rows_of_velocities, directions, least_change, numbers, rank_while,
+    rows_at, strengths,
 };
 use super::given_velocities::{Given, GivenVelocities, Level};
 use super::initial_conditions::of_joints;
@@ -20,7 +21,7 @@ use crate::scalar::Jet;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::programs::weights;
-use crate::scene::{LinkIx, Scene};
+use crate::scene::{LinkIx, Row, Scene};
 use crate::space::{Frame, MarkerState, Mat3, Vec3};
 use nalgebra::{DMatrix, DVector};
 
@@ -28,6 +29,11 @@ use nalgebra::{DMatrix, DVector};
 const MET_TOLERANCE: f64 = 1e-6;
 /// Part of a part's velocity by which it may be off and is met: it was typed with few digits.
 const TYPED_DIGITS: f64 = 1e-3;
+/// Tangents of equations of velocities that are followed, at most.
+const MAX_TANGENTS: usize = 30;
+/// Change of velocities, as a part of the largest, at which equations of velocities are solved:
+/// another would be its square.
+const CONVERGED: f64 = 1e-9;
 /// Part of the speeds of a mechanism below which a difference is rounding of what was written.
 const ROUNDING: f64 = 1e-12;
 
@@ -107,8 +113,81 @@ pub(in crate::analysis) fn velocities_while(
     (t, q, x): (f64, &[f64], &[f64]),
     look: Look<'_>,
 ) -> Result<Beginning, Vec<Diagnostic>> {
+    // equations of velocities by their tangents, first at the velocities that the others permit
+    let mut begun = velocities_about(scene, model, (t, q, x), None, look)?;
+    if !scene.has_rows_of_velocities() {
+        return Ok(begun);
+    }
+    let mut about = match have_tangents(scene, t, (q, &begun.v, x)) {
+        true => begun.v.clone(),
+        false => scene.velocities_of_rows(),
+    };
+    for _ in 0..MAX_TANGENTS {
+        begun = velocities_about(scene, model, (t, q, x), Some(&about), look)?;
+        let off = (begun.v.iter().zip(&about)).map(|(v, before)| (v - before).abs());
+        let largest = begun.v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        if off.fold(0.0, f64::max) <= CONVERGED * largest {
+            break;
+        }
+        about.copy_from_slice(&begun.v);
+    }
+    let numbers = numbers(scene, t, q, &begun.v, x);
+    let at = Equations::new(scene, &numbers);
+    for (r, row) in scene
+        .rows
+        .iter()
+        .enumerate()
+        .filter(|r| r.1.is_of_velocities())
+    {
+        let left = at.row_rate(&at.row(r));
+        let fastest = (begun.v.iter().zip(weights(&scene))).map(|(v, w)| v.abs() / w.sqrt());
+        let met = MET_TOLERANCE * scene.row_scale(r) * fastest.fold(1.0, f64::max);
+        if left.is_nan() || left.abs() > met {
+            return Err(vec![no_velocities(row, left)]);
+        }
+    }
+    Ok(begun)
+}
+
+/// Returns whether all equations of velocities have tangents at a state, by which they are solved.
+fn have_tangents(scene: Configured<'_>, t: f64, (q, v, x): (&[f64], &[f64], &[f64])) -> bool {
+    let (_, gradient, drift) = rows_at(scene, t, (q, v, x));
+    let strengths = strengths(&scene, &gradient);
+    let rows = scene.rows.iter().enumerate();
+    let mut rows = rows.filter(|(_, row)| row.is_of_velocities());
+    rows.all(|(r, _)| drift[r].is_finite() && strengths[r] > EMPTY)
+}
+
+/// Returns the error of an equation of velocities that the other rows keep from being satisfied.
+fn no_velocities(row: &Row, left: f64) -> Diagnostic {
+    let what = format!(
+        "no velocities satisfy it with the other constraints: its {} is {} at the nearest ones",
+        row.equation,
+        short(left)
+    );
+    Diagnostic::error(Cause::Assembly, what)
+        .element(row.element)
+        .help("ask for velocities that the mechanism can have, or remove what forbids them")
+}
+
+/// Returns the velocities that satisfy the rows, equations of velocities by their tangents `about`
+/// some velocities; `None`: without these.
+fn velocities_about(
+    scene: Configured<'_>,
+    model: &Model,
+    (t, q, x): (f64, &[f64], &[f64]),
+    about: Option<&[f64]>,
+    look: Look<'_>,
+) -> Result<Beginning, Vec<Diagnostic>> {
     let n = scene.layout.n_v;
-    let (_, gradient, drift) = rows_at(scene, t, q, x);
+    let still = vec![0.0; n];
+    let (_, mut gradient, mut drift) = rows_at(scene, t, (q, about.unwrap_or(&still), x));
+    if about.is_none() {
+        clear_rows_of_velocities(&scene, &mut gradient);
+        let of_velocities = scene.rows.iter().enumerate();
+        let of_velocities = of_velocities.filter(|(_, row)| row.is_of_velocities());
+        of_velocities.for_each(|(r, _)| drift[r] = 0.0);
+    }
     look()?;
     // v = v₀ + N z, with N the null space of the rows
     let firm = without_empty(scene, &gradient);
@@ -122,6 +201,9 @@ pub(in crate::analysis) fn velocities_while(
     for (r, row) in gradient.iter().enumerate() {
         let left = along(row, &v) + drift[r];
         if left.abs() > 1e-8 * scale {
+            if scene.rows[r].is_of_velocities() {
+                return Err(vec![no_velocities(&scene.rows[r], left)]);
+            }
             let still = numbers(scene, t, q, &vec![0.0; n], x);
             return Err(vec![prescribed_too_much((scene, model), &still, r, left)]);
         }
@@ -457,14 +539,21 @@ pub(in crate::analysis) fn nearest_velocities(
     x: &[f64],
     v: &[f64],
 ) -> Vec<f64> {
-    let (_, gradient, drift) = rows_at(scene, t, q, x);
-    let given = DVector::from_column_slice(v);
-    let mut missing = -drift;
-    for (r, row) in gradient.iter().enumerate() {
-        missing[r] -= along(row, &given);
+    let nearest = |given: &[f64], about: &[f64]| -> Vec<f64> {
+        let (_, gradient, drift) = rows_at(scene, t, (q, about, x));
+        let given = DVector::from_column_slice(given);
+        let mut missing = -drift;
+        for (r, row) in gradient.iter().enumerate() {
+            missing[r] -= along(row, &given);
+        }
+        let change = least_change(&without_empty(scene, &gradient), &weights(&scene), &missing);
+        (given + change).iter().copied().collect()
+    };
+    if !scene.has_rows_of_velocities() {
+        return nearest(v, &vec![0.0; scene.layout.n_v]);
     }
-    let change = least_change(&without_empty(scene, &gradient), &weights(&scene), &missing);
-    (given + change).iter().copied().collect()
+    let tangents = 0..MAX_TANGENTS;
+    tangents.fold(v.to_vec(), |v, _| nearest(&v, &v))
 }
 
 /// Returns the link that carries a marker; `None`: ground does, or it is not there.
