@@ -192,14 +192,14 @@ fn formulas_read(scene: &Scene, formula: usize) -> BTreeSet<usize> {
     seen
 }
 
-/// What a formula reads, itself or through VARIABLEs.
+/// Returns the inputs of a formula and of the VARIABLEs that it reads.
 fn inputs_read(scene: &Scene, formula: usize) -> Vec<Input> {
     let all = formulas_read(scene, formula).into_iter();
     let inputs = all.flat_map(|f| scene.formulas[f].program.inputs().iter().copied());
     inputs.collect()
 }
 
-/// Whether a formula reads velocities of markers.
+/// Returns whether a formula reads velocities of markers.
 fn reads_velocities(scene: &Scene, formula: usize) -> bool {
     let is_velocity = |input: &Input| match input {
         Input::Measure(m, _) => m.row().family == Family::Velocity,

@@ -9,6 +9,7 @@ use super::assemble::{
 use super::given_velocities::{Given, GivenVelocities, Level};
 use super::initial_conditions::of_joints;
 use super::mechanisms::{self, mechanisms};
+use super::nearest::MAX_ITERATIONS;
 use super::tangents::Tangents;
 use crate::analysis::direction::Direction;
 use crate::analysis::look::Look;
@@ -29,11 +30,6 @@ use nalgebra::{DMatrix, DVector};
 const MET_TOLERANCE: f64 = 1e-6;
 /// Part of a part's velocity by which it may be off and is met: it was typed with few digits.
 const TYPED_DIGITS: f64 = 1e-3;
-/// Tangents of equations of velocities that are followed, at most.
-const MAX_TANGENTS: usize = 30;
-/// Change of velocities, as a part of the largest, at which equations of velocities are solved:
-/// another would be its square.
-const CONVERGED: f64 = 1e-9;
 /// Part of the speeds of a mechanism below which a difference is rounding of what was written.
 const ROUNDING: f64 = 1e-12;
 
@@ -122,11 +118,9 @@ pub(in crate::analysis) fn velocities_while(
         true => begun.v.clone(),
         false => scene.velocities_of_rows(),
     };
-    for _ in 0..MAX_TANGENTS {
+    for _ in 0..MAX_ITERATIONS {
         begun = velocities_about(scene, model, (t, q, x), Some(&about), look)?;
-        let off = (begun.v.iter().zip(&about)).map(|(v, before)| (v - before).abs());
-        let largest = begun.v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        if off.fold(0.0, f64::max) <= CONVERGED * largest {
+        if is_same(&begun.v, &about) {
             break;
         }
         about.copy_from_slice(&begun.v);
@@ -147,6 +141,13 @@ pub(in crate::analysis) fn velocities_while(
         }
     }
     Ok(begun)
+}
+
+/// Returns whether velocities are others but for rounding.
+fn is_same(v: &[f64], others: &[f64]) -> bool {
+    let off = (v.iter().zip(others)).map(|(a, b)| (a - b).abs());
+    let largest = v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    off.fold(0.0, f64::max) <= ROUNDING * largest
 }
 
 /// Returns whether all equations of velocities have tangents at a state, by which they are solved.
@@ -170,6 +171,37 @@ fn no_velocities(row: &Row, left: f64) -> Diagnostic {
         .help("ask for velocities that the mechanism can have, or remove what forbids them")
 }
 
+/// Returns gradients and drifts of the rows, those of equations of velocities `about` some
+/// velocities; `None`: zero.
+fn rows_about(
+    scene: Configured<'_>,
+    (t, q, x): (f64, &[f64], &[f64]),
+    about: Option<&[f64]>,
+) -> (Vec<SparseRow>, DVector<f64>) {
+    let still = vec![0.0; scene.layout.n_v];
+    let (_, mut gradient, mut drift) = rows_at(scene, t, (q, about.unwrap_or(&still), x));
+    if about.is_none() {
+        clear_rows_of_velocities(&scene, &mut gradient);
+        let rows = scene.rows.iter().enumerate();
+        let of_velocities = rows.filter(|(_, row)| row.is_of_velocities());
+        of_velocities.for_each(|(r, _)| drift[r] = 0.0);
+    }
+    (gradient, drift)
+}
+
+/// Returns the first row that velocities do not satisfy, and its rate.
+fn unsatisfied(
+    (gradient, drift): (&[SparseRow], &DVector<f64>),
+    v: &DVector<f64>,
+) -> Option<(usize, f64)> {
+    let entries = gradient.iter().flatten();
+    let largest = entries.fold(0.0, |m: f64, e| m.max(e.1.abs()));
+    let scale = 1.0 + drift.amax().max(largest);
+    let rates = gradient.iter().enumerate();
+    let mut rates = rates.map(|(r, row)| (r, along(row, v) + drift[r]));
+    rates.find(|(_, left)| left.abs() > 1e-8 * scale)
+}
+
 /// Returns the velocities that satisfy the rows, equations of velocities by their tangents `about`
 /// some velocities; `None`: without these.
 fn velocities_about(
@@ -180,14 +212,7 @@ fn velocities_about(
     look: Look<'_>,
 ) -> Result<Beginning, Vec<Diagnostic>> {
     let n = scene.layout.n_v;
-    let still = vec![0.0; n];
-    let (_, mut gradient, mut drift) = rows_at(scene, t, (q, about.unwrap_or(&still), x));
-    if about.is_none() {
-        clear_rows_of_velocities(&scene, &mut gradient);
-        let of_velocities = scene.rows.iter().enumerate();
-        let of_velocities = of_velocities.filter(|(_, row)| row.is_of_velocities());
-        of_velocities.for_each(|(r, _)| drift[r] = 0.0);
-    }
+    let (gradient, drift) = rows_about(scene, (t, q, x), about);
     look()?;
     // v = v₀ + N z, with N the null space of the rows
     let firm = without_empty(scene, &gradient);
@@ -195,18 +220,12 @@ fn velocities_about(
     let w = mechanisms::weights(&own, n);
     let mut v = least_change(&firm, &w, &(-&drift));
     look()?;
-    let entries = gradient.iter().flatten();
-    let largest = entries.fold(0.0, |m: f64, e| m.max(e.1.abs()));
-    let scale = 1.0 + drift.amax().max(largest);
-    for (r, row) in gradient.iter().enumerate() {
-        let left = along(row, &v) + drift[r];
-        if left.abs() > 1e-8 * scale {
-            if scene.rows[r].is_of_velocities() {
-                return Err(vec![no_velocities(&scene.rows[r], left)]);
-            }
-            let still = numbers(scene, t, q, &vec![0.0; n], x);
-            return Err(vec![prescribed_too_much((scene, model), &still, r, left)]);
-        }
+    if let Some((r, left)) = unsatisfied((&gradient, &drift), &v) {
+        let still = numbers(scene, t, q, &vec![0.0; n], x);
+        return Err(vec![match scene.rows[r].is_of_velocities() {
+            true => no_velocities(&scene.rows[r], left),
+            false => prescribed_too_much((scene, model), &still, r, left),
+        }]);
     }
     let sizes = mechanisms::sizes_by_links(&own, scene.links.len());
     let given = GivenVelocities::collect((scene, &sizes), model, (t, q, x), (&gradient, &v));
@@ -238,7 +257,8 @@ fn velocities_about(
             v[k] = if x.abs() < dust { 0.0 } else { x * one };
         }
         // where branches meet, along one of them
-        let dependences = own.dependences(&part, scene, look)?;
+        let kept = |r: usize| about.is_some() || !scene.rows[r].is_of_velocities();
+        let dependences = own.dependences(&part, scene, kept, look)?;
         if dependences.is_empty() {
             continue;
         }
@@ -457,15 +477,17 @@ impl Part {
         (self.levels.iter()).all(|(a, b)| (b - a * v).amax() == 0.0)
     }
 
-    /// Returns the combinations of rows of `scene` that are zero in first order.
+    /// Returns the combinations of rows of `scene` that are zero in first order, of those that are
+    /// `kept`.
     fn dependences(
         &self,
         part: &Block,
         scene: Configured<'_>,
+        kept: impl Fn(usize) -> bool,
         look: Look<'_>,
     ) -> Result<Vec<SparseRow>, Vec<Diagnostic>> {
         let own = |r: usize| part.rows.get(r).copied();
-        let kept = |r: &usize| !scene.configuration.is_loose(*r);
+        let kept = |r: &usize| !scene.configuration.is_loose(*r) && kept(*r);
         let all = rank_while(&self.g, look)?.dependent().into_iter();
         let combination = all.map(|d| {
             let others = d.combination.iter().map(|&(r, x)| (r, -x));
@@ -552,8 +574,16 @@ pub(in crate::analysis) fn nearest_velocities(
     if !scene.has_rows_of_velocities() {
         return nearest(v, &vec![0.0; scene.layout.n_v]);
     }
-    let tangents = 0..MAX_TANGENTS;
-    tangents.fold(v.to_vec(), |v, _| nearest(&v, &v))
+    let mut found = v.to_vec();
+    for _ in 0..MAX_ITERATIONS {
+        let next = nearest(&found, &found);
+        let is_there = is_same(&next, &found);
+        found = next;
+        if is_there {
+            break;
+        }
+    }
+    found
 }
 
 /// Returns the link that carries a marker; `None`: ground does, or it is not there.

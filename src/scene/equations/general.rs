@@ -22,10 +22,8 @@ use crate::scene::history::AngleId;
 use crate::space::{Frame, MarkerState, Mat3, Vec3};
 use std::collections::HashMap;
 
-/// Most markers that a displacement or an angle reads.
-const MAX_MARKERS: usize = 3;
-/// Most markers that a velocity reads.
-const MAX_MARKERS_OF_VELOCITY: usize = 4;
+/// Most markers that one measure reads: a velocity does, a displacement or an angle one fewer.
+const MAX_MARKERS: usize = 4;
 
 /// A function of places or velocities: its value with rates in time, and what a unit multiplier on
 /// it exerts.
@@ -158,8 +156,8 @@ impl<S: Scalar> Equations<'_, S> {
                 read.push(m);
                 read.len() - 1
             });
-            (k < MAX_MARKERS).then(|| {
-                MarkerState::at_rest(seed::<{ 6 * MAX_MARKERS }, S>(&self.marker(m), 6 * k))
+            (k < MAX_MARKERS - 1).then(|| {
+                MarkerState::at_rest(seed::<{ 6 * (MAX_MARKERS - 1) }, S>(&self.marker(m), 6 * k))
             })
         })?;
         let actions = read
@@ -184,9 +182,8 @@ impl<S: Scalar> Equations<'_, S> {
                 read.push(m);
                 read.len() - 1
             });
-            (k < MAX_MARKERS_OF_VELOCITY).then(|| {
-                seed_of_velocity::<{ 6 * MAX_MARKERS_OF_VELOCITY }, S>(&self.marker(m), 6 * k)
-            })
+            (k < MAX_MARKERS)
+                .then(|| seed_of_velocity::<{ 6 * MAX_MARKERS }, S>(&self.marker(m), 6 * k))
         })?;
         let actions = (read.iter().enumerate()).map(|(k, &m)| (m, twist(&seeded, 6 * k)));
         Some(Traced {
