@@ -24,7 +24,7 @@ use super::asker::Asker;
 use super::build::Builder;
 use super::compile::Compiler;
 use super::configuration::Configuration;
-use super::equations::Equations;
+use super::equations::{Equations, STATIC};
 use super::reads::{Allowed, offence};
 use super::{ConstraintElement, Entry, Row, RowKind, Scene};
 use crate::diagnostic::Diagnostic;
@@ -61,6 +61,11 @@ impl Builder<'_> {
             }
             let read = markers_read(&self.scene, formula);
             let of_velocities = reads_velocities(&self.scene, formula);
+            if of_velocities && self.scene.mode == STATIC {
+                let what = "at rest it holds nothing, as it is an equation of velocities: what it would keep from moving is moved by its load";
+                let warning = Diagnostic::warning("gcon_at_rest", what).element(name);
+                self.scene.warnings.push(warning);
+            }
             let about = match gcon.i {
                 Some(i) => c.marker(i, name),
                 None => None,

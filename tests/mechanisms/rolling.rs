@@ -657,6 +657,13 @@ fn what_rolls_may_rest_and_what_drives_may_not() {
     assert!(found.iter().all(|x| x.abs() < 1e-9), "{found:?}");
     go(&mut s, Analysis::Dynamic, 1.0, 5);
     assert!(last(&s, "DX(20,1)").abs() < 1e-9);
+    let told = s
+        .run
+        .record
+        .warnings
+        .iter()
+        .filter(|w| w.code == "gcon_at_rest");
+    assert_eq!(told.count(), 1);
     let drives = hung("GCON/1, I=20, FUNCTION=VX(20)-2\n");
     let mut s = begin(model(&drives), "test", Options::default());
     let told = mistakes(&mut s, Analysis::Static).remove(0);
@@ -808,5 +815,41 @@ fn an_edge_that_is_set_down_strikes() {
             (found - exact).abs() < 1e-12,
             "{after:?} instead of {exact:?}"
         );
+    }
+}
+
+/// A disc that sways as it rolls, and slows down nowhere: what holds it does no work.
+#[test]
+fn a_disc_that_sways_keeps_its_energy_and_does_not_slip() {
+    let disc = Disc {
+        axle: 1.2,
+        precession: 1.5,
+        spin: 7.0,
+    };
+    let energy = format!(
+        "{}*VM(20)**2+{}*(WX(20,1,20)**2+WZ(20,1,20)**2)+{}*WY(20,1,20)**2+{}*DZ(20)",
+        MASS / 2.0,
+        A / 2.0,
+        C / 2.0,
+        MASS * G
+    );
+    let slip = [
+        "VX(20)+WY(20)*VARVAL(13)-WZ(20)*VARVAL(12)",
+        "DZ(20)+VARVAL(13)",
+        "DZ(20)",
+    ];
+    for (method, error) in [("AUTO", 1e-9), ("RADAU5", 1e-8)] {
+        let columns = [&energy[..], slip[0], slip[1], slip[2]];
+        let s = moved(&disc.text(&LEVEL), &columns, (method, error), (20.0, 200));
+        let whole = values(&s, &energy)[0];
+        let drift = off(&s, &energy, |_| whole) / whole;
+        let slips = [off(&s, slip[0], |_| 0.0), off(&s, slip[1], |_| 0.0)];
+        let heights = values(&s, "DZ(20)");
+        let [low, high] =
+            [f64::min, f64::max].map(|f| heights.iter().copied().reduce(f).expect("rows"));
+        println!("{method}: {drift:e} {slips:?} {low} {high}");
+        assert!(drift < 30.0 * error, "{method}: {drift:e}");
+        assert!(slips.iter().all(|x| *x < 1e-10), "{method}: {slips:?}");
+        assert!(high - low > 0.01, "it sways: {low} {high}");
     }
 }
