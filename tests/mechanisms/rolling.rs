@@ -853,3 +853,39 @@ fn a_disc_that_sways_keeps_its_energy_and_does_not_slip() {
         assert!(high - low > 0.01, "it sways: {low} {high}");
     }
 }
+
+/// A ball on a turntable goes in circles, at 2/7 of the table's rate: v̇ = 2/7 Ω z × v. What moves below it is given as a
+/// number, or as a part that a motion turns, in whose frame velocities are read.
+#[test]
+fn a_ball_on_a_turntable_circles_at_two_sevenths_of_its_rate() {
+    let ball = "PART/2, MASS=2, CM=20, IP=0.072,0.072,0.072, QG=1,0,0.3, VX=0.3, VY=0.2\nMARKER/20, PART=2\n\
+                ACCGRAV/KGRAV=-9.81\nGCON/1, I=20, FUNCTION=DZ(20)-0.3\n";
+    let table = "PART/5, MASS=1, CM=50, IP=1,1,1\nMARKER/50, PART=5\nJOINT/5, REVOLUTE, I=50, J=1\n\
+                 MOTION/5, JOINT=5, ROTATIONAL, FUNCTION=3*TIME\n";
+    let fixed = "GCON/2, I=20, FUNCTION=VX(20)-0.3*WY(20)+3*DY(20)\nGCON/3, I=20, FUNCTION=VY(20)+0.3*WX(20)-3*DX(20)\n";
+    let turning = "GCON/2, I=20, FUNCTION=VX(20,50,1,50)-0.3*WY(20,50,1)\n\
+                   GCON/3, I=20, FUNCTION=VY(20,50,1,50)+0.3*WX(20,50,1)\n";
+    let in_table = "GCON/2, I=20, FUNCTION=VX(20,50,50,50)-0.3*WY(20,50,50)\n\
+                    GCON/3, I=20, FUNCTION=VY(20,50,50,50)+0.3*WX(20,50,50)\n";
+    let rate = 2.0 / 7.0 * 3.0;
+    let x = |t: f64| 1.0 + (0.3 * (rate * t).sin() + 0.2 * ((rate * t).cos() - 1.0)) / rate;
+    let y = |t: f64| (0.2 * (rate * t).sin() - 0.3 * ((rate * t).cos() - 1.0)) / rate;
+    for rows in [
+        fixed.to_string(),
+        format!("{table}{turning}"),
+        format!("{table}{in_table}"),
+    ] {
+        for (method, error) in [("AUTO", 1e-9), ("RADAU5", 1e-9)] {
+            let columns = ["DX(20)", "DY(20)", "WZ(20)"];
+            let mut s = running::session_by(&format!("{ball}{rows}"), &columns, method, error);
+            go(&mut s, Analysis::Dynamic, 10.0, 50);
+            let off = [
+                off(&s, "DX(20)", x),
+                off(&s, "DY(20)", y),
+                off(&s, "WZ(20)", |_| 0.0),
+            ];
+            println!("{method}: {off:?}");
+            assert!(off.iter().all(|x| *x < 1e-8), "{method} {rows}: {off:?}");
+        }
+    }
+}
