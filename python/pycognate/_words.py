@@ -901,7 +901,7 @@ class Words:
     ) -> Element:
         """Add a GCON.
 
-        An equation of your own that stays zero.
+        An equation of your own that stays zero: of places, or of velocities as rolling is.
 
         Parameters
         ----------

@@ -628,13 +628,13 @@ function, so the function may read TIME, MODE, numbers of an ARRAY, splines of t
     },
     Code {
         name: "gcon_reads",
-        summary: "the function of a GCON reads something that is no place",
+        summary: "the function of a GCON reads something that is neither place nor velocity",
         explanation: "\
-A GCON says that an expression is zero in every position: it may read displacements and angles of markers, TIME, MODE,
-numbers of an ARRAY, splines of these, and VARIABLEs of these. Velocities, forces, and states with equations of their own
-are refused.
+A GCON says that an expression is zero, always: it may read displacements, angles and velocities of markers, TIME, MODE,
+numbers of an ARRAY, splines of these, and VARIABLEs of these. Accelerations, forces, and states with equations of their
+own are refused.
 
-    GCON/1, FUNCTION=VX(2,1)-2*VX(3,1)      holds where DX(2,1)-2*DX(3,1) keeps its value: write that
+    GCON/1, FUNCTION=VX(2,1)-0.3*WY(2,1)    rolls: an equation of velocities, which holds no position
     GCON/1, FUNCTION=DM(2,1)-0.5            a rod of length 0.5",
     },
     Code {

@@ -161,6 +161,7 @@ impl Builder<'_> {
             id,
             markers: Some((i, j)),
             acts_on: vec![i],
+            joins: Vec::new(),
             about: Some(i),
             carries: None,
             laws: &[],

@@ -214,6 +214,7 @@ impl<'m> Compiler<'m> {
                 id: tie.id,
                 markers,
                 acts_on: markers.iter().map(|m| m.0).collect(),
+                joins: Vec::new(),
                 about: markers.map(|m| m.0),
                 carries: carrying[t],
                 laws: tie.kind.rows(),

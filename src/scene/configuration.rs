@@ -258,16 +258,16 @@ impl Configured<'_> {
         self.scene.motions[motion].held && !self.configuration.motions[motion].begun
     }
 
-    /// Returns whether a row takes what the configuration shows rather than asking anything of it.
+    /// Returns whether a row takes what the configuration shows rather than asking anything of it,
+    /// as equations of velocities do.
     pub fn is_held(&self, r: usize) -> bool {
         match &self.scene.rows[r].kind {
             RowKind::Displacements(sum) => sum.held,
             RowKind::Markers {
                 motion: Some(m), ..
             } => self.waits(*m),
-            RowKind::Markers { motion: None, .. }
-            | RowKind::Formula { .. }
-            | RowKind::Cam { .. } => false,
+            RowKind::Formula { of_velocities, .. } => *of_velocities,
+            RowKind::Markers { motion: None, .. } | RowKind::Cam { .. } => false,
         }
     }
 }

@@ -292,6 +292,7 @@ impl Builder<'_> {
             id,
             markers,
             acts_on: receiver.into_iter().collect(),
+            joins: Vec::new(),
             about,
             carries: None,
             laws: &[],

@@ -65,6 +65,7 @@ impl Scene {
     pub(crate) fn joined_by(&self, element: &ConstraintElement) -> SparseRow {
         let pair = element.markers.into_iter().flat_map(|(i, j)| [i, j]);
         let markers = pair.chain(element.acts_on.iter().copied());
+        let markers = markers.chain(element.joins.iter().copied());
         row(&mut markers.filter_map(|m| self.markers[m].link))
     }
 

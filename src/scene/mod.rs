@@ -189,6 +189,19 @@ pub struct Row {
     pub kind: RowKind,
 }
 
+impl Row {
+    /// Returns whether it is an equation of velocities, which no position has to satisfy.
+    pub fn is_of_velocities(&self) -> bool {
+        matches!(
+            self.kind,
+            RowKind::Formula {
+                of_velocities: true,
+                ..
+            }
+        )
+    }
+}
+
 /// The equation that a row is.
 #[derive(Clone, Debug)]
 pub enum RowKind {
@@ -205,12 +218,14 @@ pub enum RowKind {
     },
     /// Σ factor · displacement = constant
     Displacements(Sum),
-    /// an expression of places and time is zero
+    /// an expression of places and time, or of velocities too, is zero
     Formula {
         /// index in [`Scene::formulas`]
         formula: usize,
         /// what counts as one
         scale: f64,
+        /// it reads velocities: it holds these, and no position
+        of_velocities: bool,
     },
     /// a point on a curve, or a curve on a curve
     Cam {
@@ -362,6 +377,8 @@ pub struct ConstraintElement {
     pub markers: Option<(usize, usize)>,
     /// the markers at which its rows act on what I stands for
     pub acts_on: Vec<usize>,
+    /// the markers that an equation of velocities reads, whose parts it joins
+    pub joins: Vec<usize>,
     /// the marker about whose origin its reaction is given
     pub about: Option<usize>,
     /// it carries a link: the last link of its chain, and whether it is passed from I to J

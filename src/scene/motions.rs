@@ -150,6 +150,7 @@ impl Builder<'_> {
                 id: drive.id,
                 markers,
                 acts_on: markers.iter().map(|m| m.0).collect(),
+                joins: Vec::new(),
                 about: markers.map(|m| m.0),
                 carries: None,
                 laws: &[],

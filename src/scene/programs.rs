@@ -508,7 +508,8 @@ pub fn weights(scene: &Scene) -> Vec<f64> {
 /// with `A = M⁻¹`: what is taken away is orthogonal in kinetic energy to all motions that the rows
 /// allow, so that noise normal to the rows, however large where they are nearly dependent, leaves
 /// those motions alone. In kinematics, where masses may be zero, A is a diagonal matrix of
-/// [`weights`].
+/// [`weights`]. An equation of velocities has g = 0: positions are put right along motions that it
+/// permits.
 pub fn projection<S: Scalar>(scene: &Scene, at: &Equations<'_, S>, velocities: &[S]) -> Vec<S> {
     let rows: Vec<_> = (at.rows_in_order())
         .into_iter()

@@ -1,9 +1,10 @@
-//! Inputs that the functions of constraints may read: a MOTION time alone, a GCON time and places.
+//! Inputs that the functions of constraints may read: a MOTION time alone, a GCON time, places and
+//! velocities.
 //!
-//! A constraint holds together with its first two rates. Those of a function of time come from the
-//! function itself, those of a function of places from how markers move; a function that reads
-//! velocities, forces or states has no such rates and is refused, with the name of what it reads
-//! and through which VARIABLE.
+//! A constraint holds together with its rates up to accelerations. Those of a function of time come
+//! from the function itself, those of a function of places and velocities from how markers move; a
+//! function that reads accelerations, forces or states has no such rates and is refused, with the
+//! name of what it reads and through which VARIABLE.
 
 use super::{Entry, Scene};
 use crate::expr::measures::{Family, Measure};
@@ -16,8 +17,8 @@ use std::fmt;
 pub(super) enum Allowed {
     /// TIME, MODE, numbers of an ARRAY, VARIABLEs of these
     Time,
-    /// displacements and angles of markers as well
-    Places,
+    /// displacements, angles and velocities of markers as well
+    Motion,
 }
 
 /// Something that a function reads although it may not.
@@ -220,7 +221,7 @@ fn refused(scene: &Scene, input: Input, allowed: Allowed) -> Option<Refusal> {
         Input::Delayed(_) => return Some(Refusal::Delayed),
         Input::Slot(_) => return Some(Refusal::NoFunction),
     };
-    if let (Input::Measure(m, ids), Allowed::Places) = (input, allowed) {
+    if let (Input::Measure(m, ids), Allowed::Motion) = (input, allowed) {
         let first = if m == Measure::Orient { 2 } else { 0 };
         if ids[first..]
             .iter()
@@ -230,9 +231,9 @@ fn refused(scene: &Scene, input: Input, allowed: Allowed) -> Option<Refusal> {
         }
     }
     Some(match (measure.row().family, allowed) {
-        (Family::Displacement, Allowed::Places) => return None,
+        (Family::Displacement | Family::Velocity, Allowed::Motion) => return None,
         (Family::Displacement, Allowed::Time) => Refusal::Place,
-        (Family::Velocity, _) => Refusal::Velocity,
+        (Family::Velocity, Allowed::Time) => Refusal::Velocity,
         (Family::Acceleration, _) => Refusal::Acceleration,
         (Family::GenericForce | Family::ElementForce, _) => Refusal::Force,
         (Family::System, _) => Refusal::State,

@@ -51,6 +51,21 @@ impl<S: Scalar> MarkerState<S> {
         Frame { rotation, position }
     }
 
+    /// Returns the pose and the velocities with their rates in time: of first order, as those of
+    /// accelerations are not known.
+    pub fn moving_in_time(&self) -> MarkerState<Jet<S>> {
+        let with_rate = |x: Vec3<S>, rate: Vec3<S>| {
+            Vec3(std::array::from_fn(|k| {
+                Jet::new(x.0[k], rate.0[k], S::zero())
+            }))
+        };
+        MarkerState {
+            w_GM: with_rate(self.w_GM, self.alpha_GM),
+            v_GM: with_rate(self.v_GM, self.a_GM),
+            ..MarkerState::at_rest(self.in_time())
+        }
+    }
+
     /// Returns the state of ground itself: at the origin, aligned, at rest.
     pub fn ground() -> Self {
         Self {

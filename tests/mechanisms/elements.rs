@@ -93,12 +93,12 @@ fn an_angle_that_a_gcon_reads_may_be_any_by_every_method() {
 }
 
 #[test]
-fn a_gcon_of_velocities_or_forces_is_refused_by_name() {
+fn a_gcon_of_accelerations_or_forces_is_refused_by_name() {
     let with = |function: &str| refused(&swing(&format!("GCON/1, I=20, FUNCTION={function}\n")));
-    let (code, what) = with("VX(20,1)-WZ(20,1)");
+    let (code, what) = with("ACCX(20,1)-WZ(20,1)");
     assert_eq!(code, "gcon_reads");
     assert!(
-        what.contains("GCON/1") && what.contains("VX(20,1)") && what.contains("how the parts move"),
+        what.contains("GCON/1") && what.contains("ACCX(20,1)") && what.contains("accelerations"),
         "{what}"
     );
     let (_, what) = with("DX(20,1)-FX(20,1)");
@@ -106,8 +106,8 @@ fn a_gcon_of_velocities_or_forces_is_refused_by_name() {
         what.contains("FX(20,1)") && what.contains("forces"),
         "{what}"
     );
-    let (_, what) = with("VARVAL(1)\nVARIABLE/1, FUNCTION=WZ(20)");
-    assert!(what.contains("WZ(20) (in VARIABLE/1)"), "{what}");
+    let (_, what) = with("VARVAL(1)\nVARIABLE/1, FUNCTION=WDTZ(20)");
+    assert!(what.contains("WDTZ(20) (in VARIABLE/1)"), "{what}");
 }
 
 #[test]

@@ -26,6 +26,7 @@ mod massless;
 mod mechanisms;
 mod misaligned;
 mod ranks;
+mod rolling;
 mod rows_of_loops;
 mod scene;
 mod singular_passages;

@@ -278,7 +278,8 @@ fn rank_agrees_with_exact_arithmetic_where_geometry_is_rational() {
         let scene = Scene::compile(&m.idle(), &options).expect("a scene");
         let configuration = Configuration::new(&scene);
         let configured = scene.within(&configuration);
-        let (_, gradient, _) = assemble::rows_at(configured, 0.0, &scene.initial_q, &[]);
+        let still = vec![0.0; scene.layout.n_v];
+        let (_, gradient, _) = assemble::rows_at(configured, 0.0, (&scene.initial_q, &still, &[]));
         let exact = |(r, entries): (usize, Vec<(usize, f64)>)| {
             let row = &scene.rows[r].element;
             let entries = entries.into_iter().map(|(c, x)| {

@@ -54,6 +54,14 @@ pub fn of(v: &Verification, model: &Model) -> String {
             v.freedom_nearby.unwrap_or(freedom)
         ));
     }
+    if let Some(positions) = v
+        .freedom_of_position
+        .filter(|p| Some(*p) != v.freedom_nearby)
+    {
+        line(format!(
+            "freedom of position: {positions} (equations of velocities hold no position)"
+        ));
+    }
     for f in v.free.iter().take(MOST_FREE) {
         line(format!("free: {}", f.words));
     }

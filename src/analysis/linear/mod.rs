@@ -4,9 +4,12 @@
 //! The rate is differentiated as it stands, and restricted to what the rows allow:
 //!
 //! ```text
-//! δq = T Z ξ,  δv = Z η + P ξ      G Z = 0,  Zᵀ Z = 1,  P = −G⁺ ∂(G v + ġ₀)/∂q Z      (T: from tangents to positions)
-//! ż = A z + B u,  y = C z + D u    z = (ξ, η, x)
+//! δq = T Z ξ,  δv = Y η + P ξ      H Z = 0,  Zᵀ Z = 1,  G Y = 0,  Yᵀ Y = 1,  P = −G⁺ ∂(G v + ġ₀)/∂q Z
+//! ż = A z + B u,  y = C z + D u    z = (ξ, η, x)          (T: from tangents to positions)
 //! ```
+//!
+//! with all rows in G and those that hold positions in H. Equations of velocities leave fewer
+//! velocities η than positions ξ; without them Y = Z.
 //!
 //! Turns of free parts and of balls, whose numbers count in a frame that turns along, are written
 //! in one that stands still at that instant: for a top alike all round A is that of all instants.
@@ -163,13 +166,20 @@ fn rows(m: &DMatrix<f64>) -> Vec<Vec<f64>> {
 
 /// The subspace of small motions: from z to changes of tangents, velocities and states.
 struct Small {
-    /// (n_v × n_free)
+    /// positions: Z   (n_v × n_ξ)
     z: DMatrix<f64>,
-    /// (n_v × n_free)
+    /// velocities: Y   (n_v × n_η)
+    y: DMatrix<f64>,
+    /// velocities that go with positions: P   (n_v × n_ξ)
     p: DMatrix<f64>,
 }
 
 impl Small {
+    /// Returns how many numbers of z are changes of positions and velocities: n_ξ + n_η.
+    fn n_moving(&self) -> usize {
+        self.z.ncols() + self.y.ncols()
+    }
+
     /// Finds the subspace at the present numbers.
     fn at(system: &mut System) -> Result<Self, Vec<Diagnostic>> {
         let l = system.scene.layout;
@@ -177,9 +187,9 @@ impl Small {
         let scene = system.configured();
         let active: Vec<usize> = scene.configuration.active_rows().collect();
         if active.is_empty() {
-            let z = DMatrix::identity(n, n);
+            let [z, y] = [DMatrix::identity(n, n), DMatrix::identity(n, n)];
             let p = DMatrix::zeros(n, n);
-            return Ok(Self { z, p });
+            return Ok(Self { z, y, p });
         }
         let at = Equations::new(scene, &system.numbers);
         let mut g = DMatrix::zeros(active.len(), n);
@@ -188,15 +198,17 @@ impl Small {
                 g[(k, v)] += x;
             }
         }
-        let z = assemble::null_space(&g);
+        let y = assemble::null_space(&g);
+        let of_positions = active.iter().enumerate();
+        let of_positions = of_positions.filter(|(_, r)| !scene.rows[**r].is_of_velocities());
+        let of_positions: Vec<usize> = of_positions.map(|(k, _)| k).collect();
+        let z = match of_positions.len() {
+            all if all == active.len() => y.clone(),
+            0 => DMatrix::identity(n, n),
+            _ => assemble::null_space(&g.select_rows(&of_positions)),
+        };
         let velocity = record(scene, |at| {
-            let rate = |r: &usize| {
-                let row = at.row(*r);
-                let v = at.velocities();
-                row.gradient
-                    .iter()
-                    .fold(row.drift, |s, &(k, x)| s + x * v[k])
-            };
+            let rate = |r: &usize| at.row_rate(&at.row(*r));
             active.iter().map(rate).collect()
         })
         .map_err(complaints)?;
@@ -213,7 +225,7 @@ impl Small {
                 .unwrap_or_else(|| DMatrix::zeros(active.len(), z.ncols()));
             -(g.transpose() * solved)
         };
-        Ok(Self { z, p })
+        Ok(Self { z, y, p })
     }
 }
 
@@ -253,7 +265,7 @@ pub fn linearize(
     let directions = directions(system, &small, &input_ids, wanted.no_damping);
     let slopes = slopes(system, &watched, &directions)?;
     // the matrices, and the modes
-    let n_z = 2 * small.z.ncols() + system.scene.layout.n_x;
+    let n_z = small.n_moving() + system.scene.layout.n_x;
     let state = state_rows(system, &small, &slopes, wanted.no_damping);
     let outputs = slopes.rows(system.scene.layout.n_y(), watched.len());
     let a = state.columns(0, n_z).into_owned();
@@ -326,7 +338,7 @@ fn directions(
 ) -> Vec<Direction> {
     let scene = &system.scene;
     let l = scene.layout;
-    let n = small.z.ncols();
+    let [n, n_speeds] = [small.z.ncols(), small.y.ncols()];
     let moves = tangents(system);
     let speeds = |column: &[f64]| -> Direction {
         let all = column.iter().enumerate().filter(|(_, s)| **s != 0.0);
@@ -341,11 +353,11 @@ fn directions(
         }
         directions.push(direction);
     }
-    for k in 0..n {
+    for k in 0..n_speeds {
         directions.push(if no_damping {
             Vec::new()
         } else {
-            speeds(small.z.column(k).as_slice())
+            speeds(small.y.column(k).as_slice())
         });
     }
     directions.extend((0..l.n_x).map(|k| vec![(l.x_at(k), 1.0)]));
@@ -365,10 +377,10 @@ fn state_rows(
     no_damping: bool,
 ) -> DMatrix<f64> {
     let l = system.scene.layout;
-    let (n_x, n) = (l.n_x, small.z.ncols());
+    let (n_x, n, n_moving) = (l.n_x, small.z.ncols(), small.n_moving());
     let [q, v] = [l.q(), l.v()].map(|places| &system.numbers[places]);
     let mover = system.mover();
-    let mut a = DMatrix::zeros(2 * n + n_x, slopes.ncols());
+    let mut a = DMatrix::zeros(n_moving + n_x, slopes.ncols());
     for k in 0..slopes.ncols() {
         let column: Vec<f64> = slopes.column(k).iter().copied().collect();
         let rates = l.state(&column);
@@ -378,22 +390,25 @@ fn state_rows(
             // 2 q* ∘ δq̇ has half of it, as q* turns, too
             mover.add_turning(v, small.z.column(k).as_slice(), 0.5, &mut tangent);
             mover.add_turning(v, small.p.column(k).as_slice(), 1.0, &mut speed);
-        } else if k < 2 * n && !no_damping {
-            mover.add_turning(v, small.z.column(k - n).as_slice(), 1.0, &mut speed);
+        } else if k < n_moving && !no_damping {
+            mover.add_turning(v, small.y.column(k - n).as_slice(), 1.0, &mut speed);
         }
         let [tangent, speed] = [tangent, speed].map(DVector::from_vec);
         a.view_mut((0, k), (n, 1))
             .copy_from(&small.z.tr_mul(&tangent));
-        a.view_mut((n, k), (n, 1))
-            .copy_from(&small.z.tr_mul(&speed));
+        a.view_mut((n, k), (n_moving - n, 1))
+            .copy_from(&small.y.tr_mul(&speed));
         for i in 0..n_x {
-            a[(2 * n + i, k)] = rates.x[i];
+            a[(n_moving + i, k)] = rates.x[i];
         }
     }
     if no_damping {
-        // δξ̇ = η still holds
-        for k in 0..n {
-            a[(k, n + k)] = 1.0;
+        // δξ̇ = Zᵀ Y η still holds: η where all rows hold positions
+        match small.y.ncols() == n {
+            true => (0..n).for_each(|k| a[(k, n + k)] = 1.0),
+            false => a
+                .view_mut((0, n), (n, n_moving - n))
+                .copy_from(&small.z.tr_mul(&small.y)),
         }
     }
     a
@@ -402,23 +417,22 @@ fn state_rows(
 /// Returns the names of z: coordinates where all are free, else combinations of them.
 fn state_names(scene: &Scene, small: &Small, names: &[String]) -> Vec<String> {
     let l = scene.layout;
-    let n = small.z.ncols();
-    let free = n == l.n_v;
+    let [n, n_speeds] = [small.z.ncols(), small.y.ncols()];
     let mut own = vec![String::new(); l.n_v];
     for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
         if let Some(v) = f.v {
             own[v] = c.id.to_string();
         }
     }
-    let position = |k: usize| {
-        if free {
+    let named = |k: usize, n: usize| {
+        if n == l.n_v {
             own[k].clone()
         } else {
             format!("combination {} of coordinates", k + 1)
         }
     };
-    let mut all: Vec<String> = (0..n).map(position).collect();
-    all.extend((0..n).map(|k| format!("rate of {}", position(k))));
+    let mut all: Vec<String> = (0..n).map(|k| named(k, n)).collect();
+    all.extend((0..n_speeds).map(|k| format!("rate of {}", named(k, n_speeds))));
     all.extend(l.state(names).x.iter().cloned());
     all
 }

@@ -242,7 +242,9 @@ struct PartMotion {
     parts: Vec<String>,
     /// (6 n_parts × n_free)
     map: DMatrix<f64>,
+    /// numbers of positions, and of positions and velocities
     n: usize,
+    n_moving: usize,
     layout: Layout,
 }
 
@@ -277,6 +279,7 @@ impl PartMotion {
             parts: scene.parts.iter().map(|p| p.id.to_string()).collect(),
             map: jacobian * &small.z,
             n: small.z.ncols(),
+            n_moving: small.n_moving(),
             layout: l,
         }
     }
@@ -307,7 +310,7 @@ impl PartMotion {
             unit = largest(&mut part(1));
         }
         if unit.norm() <= 1e-9 * whole {
-            unit = largest(&mut z.rows(2 * self.n, self.layout.n_x).iter().copied());
+            unit = largest(&mut z.rows(self.n_moving, self.layout.n_x).iter().copied());
         }
         if unit.norm() == 0.0 {
             return;
@@ -328,7 +331,7 @@ impl PartMotion {
             .collect();
         let states = self.layout.state(names).x.iter().enumerate();
         mode.states = states
-            .map(|(k, name)| (name.clone(), pair(z[2 * self.n + k])))
+            .map(|(k, name)| (name.clone(), pair(z[self.n_moving + k])))
             .collect();
     }
 }

@@ -113,16 +113,17 @@ impl State<'_> {
     /// Returns s.
     fn changes(&self, length: f64) -> Vec<f64> {
         let l = self.system.scene.layout;
-        let mut all = self.ways(length);
+        let mut all = self.ways(&self.small.z, length);
         let frequency = self.frequency();
-        all.extend(all.clone().into_iter().map(|way| way * frequency));
+        let speeds = self.ways(&self.small.y, length);
+        all.extend(speeds.into_iter().map(|way| way * frequency));
         let size = |j: usize| self.system.numbers[l.x_at(j)].abs();
         all.extend((0..l.n_x).map(|j| size(j).max(STATE_OF_NOTHING)));
         all
     }
 
-    /// Returns the way of each ξ.
-    fn ways(&self, length: f64) -> Vec<f64> {
+    /// Returns the way of each ξ, or of each η in one unit of time: of the columns of Z or Y.
+    fn ways(&self, space: &DMatrix<f64>, length: f64) -> Vec<f64> {
         let scene = &self.system.scene;
         let mut largest = vec![1.0; scene.layout.n_v];
         for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
@@ -134,7 +135,7 @@ impl State<'_> {
             let parts = z.iter().zip(&largest).map(|(z, l)| z.abs() / l);
             1.0 / parts.fold(f64::MIN_POSITIVE, f64::max)
         };
-        self.small.z.column_iter().map(way).collect()
+        space.column_iter().map(way).collect()
     }
 
     /// Returns the rates of parts, each over what counts as none.

@@ -5,7 +5,8 @@ use super::kept::{Kept, Prepared};
 use super::limit::SetUp;
 use super::phase::Phase;
 use super::{Accuracy, Analysis, DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, STATIC, Session};
-use crate::analysis::start::assemble::Assembly;
+use crate::analysis::quantity::short;
+use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::system::System;
 use crate::analysis::time::drives;
 use crate::analysis::time::output::Output;
@@ -17,9 +18,10 @@ use crate::diagnostic::{Cause, Diagnostic, Error, Severity};
 use crate::expr::program::Program;
 use crate::model::ElementKind;
 use crate::results::{Event, Kind, Status};
-use crate::scene::Scene;
 use crate::scene::asker::Asker;
+use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
+use crate::scene::{Row, Scene};
 
 /// Velocities times links of the largest scene that is searched for free directions without mass
 /// before each run: a motion of all links takes about a microsecond per link.
@@ -158,8 +160,16 @@ impl Session {
             },
             _ => {
                 let (system, assembly) = self.prepare(mode, &[], watch)?;
-                if asked == Analysis::Kinematic && assembly.freedom > 0 {
-                    return Err(vec![has_freedom(assembly.freedom)]);
+                if asked == Analysis::Kinematic {
+                    if let Some(row) = system.scene.rows.iter().find(|r| r.is_of_velocities()) {
+                        return Err(vec![is_of_velocities(row)]);
+                    }
+                    if assembly.freedom > 0 {
+                        return Err(vec![has_freedom(assembly.freedom)]);
+                    }
+                }
+                if asked == Analysis::Static {
+                    check_rest(&system)?;
                 }
                 (system, assembly, asked)
             }
@@ -308,6 +318,42 @@ fn has_freedom(freedom: usize) -> Diagnostic {
         format!("a kinematic simulation needs a mechanism without freedom; this one has {freedom}");
     Diagnostic::error(Cause::Freedom, what)
         .help("drive the remaining freedoms by MOTION, or simulate dynamically")
+}
+
+/// Checks that nothing asks for velocities of a system at rest.
+fn check_rest(system: &System) -> Result<(), Vec<Diagnostic>> {
+    let scene = system.configured();
+    let at = Equations::new(scene, &system.numbers);
+    let rows = scene.rows.iter().enumerate();
+    let asked = rows
+        .filter(|(_, row)| row.is_of_velocities())
+        .filter_map(|(r, row)| {
+            let off = at.row_rate(&at.row(r));
+            let rests = off.abs() <= assemble::CLOSED * scene.row_scale(r);
+            (!rests).then(|| {
+                let what = format!(
+                    "its FUNCTION is {} without velocities: nothing can rest",
+                    short(off)
+                );
+                Diagnostic::error("gcon_at_rest", what)
+                    .element(row.element)
+                    .help("simulate dynamically, or DEACTIVATE it before statics")
+            })
+        });
+    let asked: Vec<Diagnostic> = asked.collect();
+    match asked.is_empty() {
+        true => Ok(()),
+        false => Err(asked),
+    }
+}
+
+/// Returns the error of an equation of velocities in kinematics.
+fn is_of_velocities(row: &Row) -> Diagnostic {
+    let what = "a kinematic simulation goes from position to position, and its FUNCTION holds \
+                velocities alone";
+    Diagnostic::error(Cause::Freedom, what)
+        .element(row.element)
+        .help("simulate dynamically: velocities are followed in time")
 }
 
 /// Returns whether the free directions of a scene are few enough to look for those without mass.

@@ -67,7 +67,8 @@ impl Session {
             return Ok(Prepared::Still(scene, assembly));
         }
         let (start, v, assembly) = self.assembled(DYNAMIC, &[], watch)?;
-        if assembly.freedom > 0 {
+        // velocities that equations determine are followed in time
+        if assembly.freedom > 0 || assembly.of_velocities > 0 {
             let system = self.recorded((start, v), &assembly, &[], watch)?;
             return Ok(Prepared::Moves(Box::new(system), assembly));
         }

@@ -20,7 +20,7 @@ use crate::scalar::Scalar;
 use crate::scene::broken;
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured};
-use crate::scene::equations::{Equations, row_name};
+use crate::scene::equations::{Equations, STATIC, row_name};
 use crate::scene::mover::Mover;
 use crate::scene::programs::weights;
 use crate::scene::{RowKind, Scene};
@@ -60,8 +60,11 @@ pub struct Redundant {
 pub struct Assembly {
     /// rows that depend on others wherever the mechanism can go near here
     pub redundant: Vec<Redundant>,
-    /// freedoms of the assembled mechanism, from the rank near here
+    /// freedoms of the assembled mechanism, from the rank near here: velocities that may be chosen
     pub freedom: usize,
+    /// rows near here that hold velocities and no position: there are so many more positions that
+    /// may be chosen than velocities
+    pub of_velocities: usize,
     /// rows that depend on others at the assembled position, be it only there
     pub dependent: Vec<Redundant>,
     /// freedoms to first order, from the rank at the assembled position
@@ -172,15 +175,15 @@ fn begin_motions(scene: &Scene, configuration: &mut Configuration, t: f64, q: &[
 }
 
 /// Evaluates values and gradients of all rows at an instant: g (m), rows of G (m × n_v); zero for
-/// those that are left out within tolerance.
+/// those that are left out within tolerance. Equations of velocities have no value, and their
+/// gradients are those at [`Scene::velocities_of_rows`].
 pub(in crate::analysis) fn rows_at_rest(
     scene: Configured<'_>,
     t: f64,
     q: &[f64],
     x: &[f64],
 ) -> (DVector<f64>, Vec<SparseRow>) {
-    let l = scene.layout;
-    let at = Equations::new(scene, &numbers(scene, t, q, &vec![0.0; l.n_v], x));
+    let at = Equations::new(scene, &numbers(scene, t, q, &scene.velocities_of_rows(), x));
     let m = scene.rows.len();
     let (mut g, mut gradient) = (DVector::zeros(m), vec![Vec::new(); m]);
     for r in (0..m).filter(|&r| !scene.configuration.is_loose(r)) {
@@ -191,15 +194,14 @@ pub(in crate::analysis) fn rows_at_rest(
     (g, gradient)
 }
 
-/// The same, with the drifts ġ₀ (m).
+/// The same about velocities `v`, with the drifts ġ₀ (m): ġ = G v + ġ₀. What they are about matters
+/// to equations of velocities that are not linear alone.
 pub fn rows_at(
     scene: Configured<'_>,
     t: f64,
-    q: &[f64],
-    x: &[f64],
+    (q, v, x): (&[f64], &[f64], &[f64]),
 ) -> (DVector<f64>, Vec<SparseRow>, DVector<f64>) {
-    let l = scene.layout;
-    let at = Equations::new(scene, &numbers(scene, t, q, &vec![0.0; l.n_v], x));
+    let at = Equations::new(scene, &numbers(scene, t, q, v, x));
     let m = scene.rows.len();
     let (mut g, mut gradient, mut drift) =
         (DVector::zeros(m), vec![Vec::new(); m], DVector::zeros(m));
@@ -243,6 +245,12 @@ pub(super) fn strengths(scene: &Scene, gradient: &[SparseRow]) -> Vec<f64> {
         squares.sum::<f64>().sqrt() / scene.row_scale_at(r, scene.size)
     };
     gradient.iter().enumerate().map(strength).collect()
+}
+
+/// Clears the rows that no position has to satisfy.
+pub(super) fn clear_rows_of_velocities(scene: &Scene, gradient: &mut [SparseRow]) {
+    let of_velocities = (gradient.iter_mut().zip(&scene.rows)).filter(|r| r.1.is_of_velocities());
+    of_velocities.for_each(|(row, _)| row.clear());
 }
 
 /// Clears the rows that hold and move nothing, as a GCON between markers of one body: the direction
@@ -369,6 +377,7 @@ pub(super) fn close_while<E>(
             g[r] = 0.0;
             gradient[r].clear();
         }
+        clear_rows_of_velocities(scene, &mut gradient);
         clear_idle(scene, g.as_slice(), &mut gradient);
         (g, gradient)
     };
@@ -583,6 +592,8 @@ pub(super) fn positions_while(
     for rows in [&mut found.redundant, &mut found.dependent] {
         alignment::explain(here, &reached, &active, rows);
     }
+    let of_velocities = active.iter().filter(|&&r| scene.rows[r].is_of_velocities());
+    found.of_velocities = of_velocities.count();
     configuration.active = vec![false; scene.rows.len()];
     active.iter().for_each(|&r| configuration.active[r] = true);
     Ok(found)
@@ -645,7 +656,8 @@ fn gap(scene: &Scene, at: &Equations<'_, f64>, r: usize, g: f64) -> String {
 }
 
 /// Finds independent rows, and for each other row the rows that it is a combination of:
-/// translations before rotations before sums. Rows in `first` come before all others.
+/// translations before rotations before sums. Rows in `first` come before all others, but for
+/// equations of velocities, which come last and take no part at rest.
 pub fn rank(
     scene: &Scene,
     gradient: &[SparseRow],
@@ -673,10 +685,15 @@ pub(super) fn rank_of_rows<E>(
         RowKind::Markers { law, .. } => u8::from(!law.is_length()),
         RowKind::Displacements(_) | RowKind::Formula { .. } | RowKind::Cam { .. } => 2,
     };
-    let order = |&r: &usize| (!preferred[r], kind(r), r);
+    let order = |&r: &usize| {
+        let of_velocities = scene.rows[r].is_of_velocities();
+        (of_velocities, !preferred[r], kind(r), r)
+    };
     let strengths = strengths(scene, gradient);
+    let rests = |r: usize| scene.mode == STATIC && scene.rows[r].is_of_velocities();
     let (mut independent, mut redundant) = (Vec::new(), Vec::new());
     for mut part in connected(gradient, w.len()) {
+        part.rows.retain(|&r| !rests(r));
         part.rows.arrange_by_key(order);
         let mut rows = scaled_part(&part, gradient, w);
         for (row, &r) in rows.iter_mut().zip(&part.rows) {
@@ -749,7 +766,8 @@ mod tests {
                 let moved = |(j, q): (usize, &f64)| q + 0.01 * f64::from(k) * (j as f64).cos();
                 let q: Vec<f64> = scene.initial_q.iter().enumerate().map(moved).collect();
                 let (g, gradient) = rows_at_rest(here, 0.1, &q, &x);
-                let (same_g, same_gradient, _) = rows_at(here, 0.1, &q, &x);
+                let v = scene.velocities_of_rows();
+                let (same_g, same_gradient, _) = rows_at(here, 0.1, (&q, &v, &x));
                 let bits = |g: &DVector<f64>, gradient: &[SparseRow]| -> Vec<(usize, u64)> {
                     let values = g.iter().copied().enumerate();
                     let all = values.chain(gradient.iter().flatten().copied());

@@ -116,7 +116,8 @@ impl<'s> Surroundings<'s> {
     /// Finds what is free at a position; `None`: nothing is, and nothing is driven.
     pub fn new(scene: Configured<'s>, t: f64, q: &'s [f64], x: &'s [f64]) -> Option<Self> {
         let w = weights(&scene);
-        let (_, gradient) = assemble::rows_at_rest(scene, t, q, x);
+        let (_, mut gradient) = assemble::rows_at_rest(scene, t, q, x);
+        assemble::clear_rows_of_velocities(&scene, &mut gradient);
         let free = free_directions(&gradient, &w);
         let at = assemble::numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
         let at = Equations::new(scene, &at);

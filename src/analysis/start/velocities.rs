@@ -3,11 +3,13 @@
 //! given.
 
 use super::assemble::{
-    DEPENDENT, EMPTY, directions, least_change, numbers, rank_while, rows_at, strengths,
+    DEPENDENT, EMPTY, clear_rows_of_velocities, directions, least_change, numbers, rank_while,
+    rows_at, strengths,
 };
 use super::given_velocities::{Given, GivenVelocities, Level};
 use super::initial_conditions::of_joints;
 use super::mechanisms::{self, mechanisms};
+use super::nearest::MAX_ITERATIONS;
 use super::tangents::Tangents;
 use crate::analysis::direction::Direction;
 use crate::analysis::look::Look;
@@ -20,7 +22,7 @@ use crate::scalar::Jet;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::programs::weights;
-use crate::scene::{LinkIx, Scene};
+use crate::scene::{LinkIx, Row, Scene};
 use crate::space::{Frame, MarkerState, Mat3, Vec3};
 use nalgebra::{DMatrix, DVector};
 
@@ -107,8 +109,110 @@ pub(in crate::analysis) fn velocities_while(
     (t, q, x): (f64, &[f64], &[f64]),
     look: Look<'_>,
 ) -> Result<Beginning, Vec<Diagnostic>> {
+    // equations of velocities by their tangents, first at the velocities that the others permit
+    let mut begun = velocities_about(scene, model, (t, q, x), None, look)?;
+    if !scene.has_rows_of_velocities() {
+        return Ok(begun);
+    }
+    let mut about = match have_tangents(scene, t, (q, &begun.v, x)) {
+        true => begun.v.clone(),
+        false => scene.velocities_of_rows(),
+    };
+    for _ in 0..MAX_ITERATIONS {
+        begun = velocities_about(scene, model, (t, q, x), Some(&about), look)?;
+        if is_same(&begun.v, &about) {
+            break;
+        }
+        about.copy_from_slice(&begun.v);
+    }
+    let numbers = numbers(scene, t, q, &begun.v, x);
+    let at = Equations::new(scene, &numbers);
+    for (r, row) in scene
+        .rows
+        .iter()
+        .enumerate()
+        .filter(|r| r.1.is_of_velocities())
+    {
+        let left = at.row_rate(&at.row(r));
+        let fastest = (begun.v.iter().zip(weights(&scene))).map(|(v, w)| v.abs() / w.sqrt());
+        let met = MET_TOLERANCE * scene.row_scale(r) * fastest.fold(1.0, f64::max);
+        if left.is_nan() || left.abs() > met {
+            return Err(vec![no_velocities(row, left)]);
+        }
+    }
+    Ok(begun)
+}
+
+/// Returns whether velocities are others but for rounding.
+fn is_same(v: &[f64], others: &[f64]) -> bool {
+    let off = (v.iter().zip(others)).map(|(a, b)| (a - b).abs());
+    let largest = v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    off.fold(0.0, f64::max) <= ROUNDING * largest
+}
+
+/// Returns whether all equations of velocities have tangents at a state, by which they are solved.
+fn have_tangents(scene: Configured<'_>, t: f64, (q, v, x): (&[f64], &[f64], &[f64])) -> bool {
+    let (_, gradient, drift) = rows_at(scene, t, (q, v, x));
+    let strengths = strengths(&scene, &gradient);
+    let rows = scene.rows.iter().enumerate();
+    let mut rows = rows.filter(|(_, row)| row.is_of_velocities());
+    rows.all(|(r, _)| drift[r].is_finite() && strengths[r] > EMPTY)
+}
+
+/// Returns the error of an equation of velocities that the other rows keep from being satisfied.
+fn no_velocities(row: &Row, left: f64) -> Diagnostic {
+    let what = format!(
+        "no velocities satisfy it with the other constraints: its {} is {} at the nearest ones",
+        row.equation,
+        short(left)
+    );
+    Diagnostic::error(Cause::Assembly, what)
+        .element(row.element)
+        .help("ask for velocities that the mechanism can have, or remove what forbids them")
+}
+
+/// Returns gradients and drifts of the rows, those of equations of velocities `about` some
+/// velocities; `None`: zero.
+fn rows_about(
+    scene: Configured<'_>,
+    (t, q, x): (f64, &[f64], &[f64]),
+    about: Option<&[f64]>,
+) -> (Vec<SparseRow>, DVector<f64>) {
+    let still = vec![0.0; scene.layout.n_v];
+    let (_, mut gradient, mut drift) = rows_at(scene, t, (q, about.unwrap_or(&still), x));
+    if about.is_none() {
+        clear_rows_of_velocities(&scene, &mut gradient);
+        let rows = scene.rows.iter().enumerate();
+        let of_velocities = rows.filter(|(_, row)| row.is_of_velocities());
+        of_velocities.for_each(|(r, _)| drift[r] = 0.0);
+    }
+    (gradient, drift)
+}
+
+/// Returns the first row that velocities do not satisfy, and its rate.
+fn unsatisfied(
+    (gradient, drift): (&[SparseRow], &DVector<f64>),
+    v: &DVector<f64>,
+) -> Option<(usize, f64)> {
+    let entries = gradient.iter().flatten();
+    let largest = entries.fold(0.0, |m: f64, e| m.max(e.1.abs()));
+    let scale = 1.0 + drift.amax().max(largest);
+    let rates = gradient.iter().enumerate();
+    let mut rates = rates.map(|(r, row)| (r, along(row, v) + drift[r]));
+    rates.find(|(_, left)| left.abs() > 1e-8 * scale)
+}
+
+/// Returns the velocities that satisfy the rows, equations of velocities by their tangents `about`
+/// some velocities; `None`: without these.
+fn velocities_about(
+    scene: Configured<'_>,
+    model: &Model,
+    (t, q, x): (f64, &[f64], &[f64]),
+    about: Option<&[f64]>,
+    look: Look<'_>,
+) -> Result<Beginning, Vec<Diagnostic>> {
     let n = scene.layout.n_v;
-    let (_, gradient, drift) = rows_at(scene, t, q, x);
+    let (gradient, drift) = rows_about(scene, (t, q, x), about);
     look()?;
     // v = v₀ + N z, with N the null space of the rows
     let firm = without_empty(scene, &gradient);
@@ -116,15 +220,12 @@ pub(in crate::analysis) fn velocities_while(
     let w = mechanisms::weights(&own, n);
     let mut v = least_change(&firm, &w, &(-&drift));
     look()?;
-    let entries = gradient.iter().flatten();
-    let largest = entries.fold(0.0, |m: f64, e| m.max(e.1.abs()));
-    let scale = 1.0 + drift.amax().max(largest);
-    for (r, row) in gradient.iter().enumerate() {
-        let left = along(row, &v) + drift[r];
-        if left.abs() > 1e-8 * scale {
-            let still = numbers(scene, t, q, &vec![0.0; n], x);
-            return Err(vec![prescribed_too_much((scene, model), &still, r, left)]);
-        }
+    if let Some((r, left)) = unsatisfied((&gradient, &drift), &v) {
+        let still = numbers(scene, t, q, &vec![0.0; n], x);
+        return Err(vec![match scene.rows[r].is_of_velocities() {
+            true => no_velocities(&scene.rows[r], left),
+            false => prescribed_too_much((scene, model), &still, r, left),
+        }]);
     }
     let sizes = mechanisms::sizes_by_links(&own, scene.links.len());
     let given = GivenVelocities::collect((scene, &sizes), model, (t, q, x), (&gradient, &v));
@@ -156,7 +257,8 @@ pub(in crate::analysis) fn velocities_while(
             v[k] = if x.abs() < dust { 0.0 } else { x * one };
         }
         // where branches meet, along one of them
-        let dependences = own.dependences(&part, scene, look)?;
+        let kept = |r: usize| about.is_some() || !scene.rows[r].is_of_velocities();
+        let dependences = own.dependences(&part, scene, kept, look)?;
         if dependences.is_empty() {
             continue;
         }
@@ -375,15 +477,17 @@ impl Part {
         (self.levels.iter()).all(|(a, b)| (b - a * v).amax() == 0.0)
     }
 
-    /// Returns the combinations of rows of `scene` that are zero in first order.
+    /// Returns the combinations of rows of `scene` that are zero in first order, of those that are
+    /// `kept`.
     fn dependences(
         &self,
         part: &Block,
         scene: Configured<'_>,
+        kept: impl Fn(usize) -> bool,
         look: Look<'_>,
     ) -> Result<Vec<SparseRow>, Vec<Diagnostic>> {
         let own = |r: usize| part.rows.get(r).copied();
-        let kept = |r: &usize| !scene.configuration.is_loose(*r);
+        let kept = |r: &usize| !scene.configuration.is_loose(*r) && kept(*r);
         let all = rank_while(&self.g, look)?.dependent().into_iter();
         let combination = all.map(|d| {
             let others = d.combination.iter().map(|&(r, x)| (r, -x));
@@ -457,14 +561,29 @@ pub(in crate::analysis) fn nearest_velocities(
     x: &[f64],
     v: &[f64],
 ) -> Vec<f64> {
-    let (_, gradient, drift) = rows_at(scene, t, q, x);
-    let given = DVector::from_column_slice(v);
-    let mut missing = -drift;
-    for (r, row) in gradient.iter().enumerate() {
-        missing[r] -= along(row, &given);
+    let nearest = |given: &[f64], about: &[f64]| -> Vec<f64> {
+        let (_, gradient, drift) = rows_at(scene, t, (q, about, x));
+        let given = DVector::from_column_slice(given);
+        let mut missing = -drift;
+        for (r, row) in gradient.iter().enumerate() {
+            missing[r] -= along(row, &given);
+        }
+        let change = least_change(&without_empty(scene, &gradient), &weights(&scene), &missing);
+        (given + change).iter().copied().collect()
+    };
+    if !scene.has_rows_of_velocities() {
+        return nearest(v, &vec![0.0; scene.layout.n_v]);
     }
-    let change = least_change(&without_empty(scene, &gradient), &weights(&scene), &missing);
-    (given + change).iter().copied().collect()
+    let mut found = v.to_vec();
+    for _ in 0..MAX_ITERATIONS {
+        let next = nearest(&found, &found);
+        let is_there = is_same(&next, &found);
+        found = next;
+        if is_there {
+            break;
+        }
+    }
+    found
 }
 
 /// Returns the link that carries a marker; `None`: ground does, or it is not there.

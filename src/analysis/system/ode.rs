@@ -149,7 +149,16 @@ impl System {
             let change = l.change(projection.run(&self.numbers));
             let scales = &self.recorded.rows.scales;
             let sizes = change.q.iter().zip(scales).map(|(x, s)| x.abs() * s);
-            let size = sizes.fold(0.0, |m, x| if x.is_nan() { x } else { f64::max(m, x) });
+            let largest = |m: f64, x: f64| if x.is_nan() { x } else { f64::max(m, x) };
+            let mut size = sizes.fold(0.0, largest);
+            if self.recorded.rows.of_velocities {
+                let speeds = l.state(y).v.iter().zip(scales);
+                let fastest = speeds.map(|(v, s)| v.abs() * s).fold(1.0, f64::max);
+                let sizes = change.v.iter().zip(scales);
+                size = sizes
+                    .map(|(x, s)| x.abs() * s / fastest)
+                    .fold(size, largest);
+            }
             if !size.is_finite() || size > 2.0 * last {
                 break;
             }
@@ -232,7 +241,9 @@ impl Ode for System {
 
     fn filter_errors(&mut self, t: f64, y: &[f64], errors: [&mut [f64]; 2]) -> bool {
         let rows = &mut self.recorded.rows;
-        let (true, Some(projection)) = (rows.were_weak, &mut rows.projection) else {
+        // what an equation of velocities forbids is no error of a position alone
+        let filters = rows.were_weak && !rows.of_velocities;
+        let (true, Some(projection)) = (filters, &mut rows.projection) else {
             return false;
         };
         // Δv(v) = −W Gᵀ (G W Gᵀ)⁻¹ (G v + ġ₀): its part linear in v takes away all that is normal

@@ -11,7 +11,7 @@ use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::scene::cams::Cam;
 use crate::scene::configuration::Configured;
-use crate::scene::equations::Unsupported;
+use crate::scene::equations::{STATIC, Unsupported};
 use crate::scene::programs;
 use crate::scene::recorder::Recorder;
 
@@ -37,6 +37,9 @@ pub(super) struct Rows {
     pub(super) scales: Vec<f64>,
     /// places in x of contacts on curves   (n_contacts)
     pub contacts: Vec<usize>,
+    /// some rows that take part are equations of velocities, which may not be linear: a projection
+    /// has converged when velocities have, too
+    pub of_velocities: bool,
     /// the last state that was to be projected was on the rows
     pub clean: bool,
     /// largest change of a position in the last iteration of a projection, made after velocities
@@ -63,6 +66,8 @@ impl Rows {
             gradients: RowGradients::new(recorder)?,
             scales: weights.iter().map(|w| w.sqrt().recip()).collect(),
             contacts: contact_states(&scene),
+            of_velocities: (scene.configuration.active_rows())
+                .any(|r| scene.rows[r].is_of_velocities()),
             clean: false,
             last_change: 0.0,
             were_weak: false,
@@ -194,11 +199,9 @@ fn projection_program(recorder: &Recorder<'_, '_>) -> Result<Option<Program>, Ve
 /// Records the violation of each row that takes part, and its rate; `None` when none does.
 fn violation_program(recorder: &Recorder<'_, '_>) -> Result<Option<Program>, Vec<Unsupported>> {
     let (scene, at) = (recorder.scene(), recorder.at());
-    let v = at.velocities();
     let both = |r: usize| {
         let row = at.row(r);
-        let along = row.gradient.iter();
-        let rate = along.fold(row.drift, |s, &(k, g)| s + g * v[k]);
+        let rate = at.row_rate(&row);
         let one = 1.0 / scene.row_scale(r);
         [row.value.scale(one), rate.scale(one)]
     };
@@ -209,13 +212,21 @@ fn violation_program(recorder: &Recorder<'_, '_>) -> Result<Option<Program>, Vec
     }
 }
 
-/// Records the rows that are left out without being zero whatever happens; `None`: there are none.
+/// Records the rows that are left out without being zero whatever happens, of equations of
+/// velocities their rates; `None`: there are none.
 fn left_out_program(
     recorder: &Recorder<'_, '_>,
 ) -> Result<Option<(Vec<usize>, Program)>, Vec<Unsupported>> {
     let (scene, at) = (recorder.scene(), recorder.at());
     let idle = (0..scene.rows.len()).filter(|&r| !scene.configuration.active[r]);
-    let values = idle.map(|r| (r, at.row(r).value));
+    let value = |r: usize| {
+        let row = at.row(r);
+        match scene.rows[r].is_of_velocities() && scene.mode != STATIC {
+            true => at.row_rate(&row),
+            false => row.value,
+        }
+    };
+    let values = idle.map(|r| (r, value(r)));
     let (rows, values): (Vec<usize>, Vec<Sym<'_>>) =
         values.filter(|(_, x)| x.known().is_none()).unzip();
     let program = recorder.program(&values)?;

@@ -47,6 +47,7 @@ impl Verification {
             "gruebler": self.gruebler,
             "freedom": self.freedom,
             "freedom_nearby": self.freedom_nearby,
+            "freedom_of_position": self.freedom_of_position,
             "consistent": self.inconsistent.is_empty(),
             "inconsistent": self.inconsistent.iter().map(finding).collect::<Vec<_>>(),
             "redundant": self.redundant(),

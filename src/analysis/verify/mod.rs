@@ -5,7 +5,9 @@
 //! freedom    coordinates of the forest − rank of the rows that close loops, at the assembled position
 //! ```
 //!
-//! They differ by the rows that depend on others. Each of these is told with the elements that fix
+//! An equation of velocities (a GCON that reads them) counts as the others do: freedom is that of
+//! velocities, and positions have so many more. Both counts differ by the rows that depend on
+//! others. Each of these is told with the elements that fix
 //! the same direction already: those that can be stressed against it without any load
 //! (`scene/equations/stress.rs`). Whether the dependence is one of this position only is found out
 //! at positions nearby.
@@ -128,6 +130,8 @@ pub struct Verification {
     pub freedom: Option<usize>,
     /// from the rank near it
     pub freedom_nearby: Option<usize>,
+    /// positions that are free near it: more than velocities by the equations of velocities
+    pub freedom_of_position: Option<usize>,
     /// rows that depend on others at the assembled position
     pub dependent: Vec<Dependent>,
     /// reactions that are not unique
@@ -366,6 +370,7 @@ impl Verification {
         self.assembly = (assembly.iterations, assembly.moved);
         self.freedom = Some(assembly.freedom_here);
         self.freedom_nearby = Some(assembly.freedom);
+        self.freedom_of_position = Some(assembly.freedom + assembly.of_velocities);
         let numbers = assemble::numbers(scene, 0.0, q, &vec![0.0; scene.layout.n_v], x);
         let turned = misalignment::turned(scene, model, &numbers, true);
         self.warn(turned);

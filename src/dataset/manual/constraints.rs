@@ -133,9 +133,9 @@ pub(super) static PAGES: &[Page] = &[
     },
     Page {
         keyword: "GCON",
-        summary: "An equation of your own that stays zero.",
-        text: "It may read displacements, angles and TIME; what it holds at the start is found by assembly.",
-        equation: "FUNCTION(displacements, angles, time) = 0",
+        summary: "An equation of your own that stays zero: of places, or of velocities as rolling is.",
+        text: "It may read displacements, angles, velocities and TIME; what it holds at the start is found by assembly. One that reads velocities holds velocities and no position (nonholonomic where it is no rate of another equation): the velocities of the start are brought onto it, its force acts along its slopes by velocities, linear in them or not. Statics leaves it out where it is zero without velocities and refuses it elsewhere; kinematics refuses it; LINEAR has fewer velocities than positions; `cognate verify` counts both.",
+        equation: "FUNCTION(displacements, angles, time) = 0                  a rod:       DM(2,1)-0.5\nFUNCTION(displacements, angles, velocities, time) = 0      a wheel rolls:  VX(2)-0.3*WY(2)",
         effect: Effect::Solved,
         notes: &[
             f("I", "Marker on whose part the reaction is told."),

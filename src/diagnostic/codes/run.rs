@@ -343,6 +343,16 @@ In statics nothing has crept, so FRICTION holds nothing and loads move its part.
     SIMULATE/DYNAMIC, DURATION=5         instead of SIMULATE/STATIC",
     },
     Code {
+        name: "gcon_at_rest",
+        summary: "a GCON asks for velocities, and the simulation is one at rest",
+        explanation: "\
+A GCON that reads velocities exerts nothing at rest where it is zero without velocities, as rolling is: statics leaves it out,
+so that a sledge slides off its slope. One that is not zero there asks for motion, and nothing can rest: that is an error.
+
+    GCON/1, FUNCTION=WZ(2,1)-5           drives: DEACTIVATE/GCON, ID=1 before SIMULATE/STATIC
+    GCON/1, FUNCTION=VX(2,1)-0.3*WY(2,1) rolls, and rests",
+    },
+    Code {
         name: "convex_hull",
         summary: "a contact takes the convex hull of a shell",
         explanation: "\

@@ -31,7 +31,11 @@ impl<S: Scalar> Equations<'_, S> {
                 self.marker_row(*law, (*i, *j), drive)
             }
             RowKind::Displacements(sum) => self.sum_row(sum, self.configuration.sums[r]),
-            RowKind::Formula { formula, .. } => self.formula_row(*formula),
+            RowKind::Formula {
+                formula,
+                of_velocities,
+                ..
+            } => self.formula_row(*formula, *of_velocities),
             RowKind::Cam { cam, component } => self.cam_row(*cam, *component),
         }
     }
@@ -91,6 +95,16 @@ impl<S: Scalar> Equations<'_, S> {
         }
         let row = self.row(r);
         (row.value, row.gradient.clone())
+    }
+
+    /// Returns the rate of a row.
+    ///
+    /// ```text
+    /// ġ = gradient · v + ġ₀
+    /// ```
+    pub fn row_rate(&self, row: &RowValue<S>) -> S {
+        let along = row.gradient.iter();
+        along.fold(row.drift, |sum, &(v, g)| sum + g * self.now.v[v])
     }
 
     /// Returns two markers as they move in time.
@@ -327,13 +341,15 @@ impl<S: Scalar> Equations<'_, S> {
     }
 }
 
-/// A row of G with its right sides.
+/// A row of G with its right sides. An equation of velocities stands at the level of ġ: its value
+/// is zero wherever the mechanism is.
 pub struct RowValue<S> {
     /// g
     pub value: S,
     /// gradient along the velocities of free coordinates: (place in v, ∂ġ/∂v)
     pub gradient: Vec<(usize, S)>,
-    /// ġ = gradient · v + this (driven coordinates and functions of time)
+    /// ġ = gradient · v + this (driven coordinates and functions of time; of an equation that is
+    /// not linear in v, what the tangent leaves)
     pub drift: S,
     /// g̈ = gradient · v̇ − gamma
     pub gamma: S,

@@ -113,12 +113,11 @@ impl Gradients {
 /// Evaluates all rows at one place, columns scaled, each row against its scale.
 fn gradients(scene: Configured<'_>, numbers: &[f64]) -> Vec<Vec<f64>> {
     let l = scene.layout;
-    let (_, gradient) = assemble::rows_at_rest(
-        scene,
-        numbers[Layout::TIME],
-        &numbers[l.q()],
-        &numbers[l.x()],
-    );
+    let (t, q, x) = (numbers[Layout::TIME], &numbers[l.q()], &numbers[l.x()]);
+    let gradient = match scene.has_rows_of_velocities() {
+        true => assemble::rows_at(scene, t, (q, &numbers[l.v()], x)).1,
+        false => assemble::rows_at_rest(scene, t, q, x).1,
+    };
     let mut all = assemble::scaled_rows(&gradient, &weights(&scene));
     for (r, row) in all.iter_mut().enumerate() {
         let one = scene.row_scale(r);
@@ -147,9 +146,12 @@ pub fn better_rows(scene: Configured<'_>, numbers: &[f64]) -> Judgement {
         places.for_each(|(row, &r)| row.copy_from_slice(&all[r]));
         rows
     };
-    let every: Vec<usize> = (0..all.len()).collect();
     let is_kept = |r: usize| scene.configuration.active[r];
-    let (better, most) = select(rows_of(&every), is_kept, usize::MAX);
+    // an equation of velocities never takes the place of a row that holds positions
+    let may_be = |r: &usize| is_kept(*r) || !scene.rows[*r].is_of_velocities();
+    let every: Vec<usize> = (0..all.len()).filter(may_be).collect();
+    let (better, most) = select(rows_of(&every), |k| is_kept(every[k]), usize::MAX);
+    let better: Vec<usize> = better.into_iter().map(|k| every[k]).collect();
     if better == kept {
         return Judgement::Right(most);
     }
