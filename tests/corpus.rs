@@ -13,6 +13,8 @@ mod running;
 mod runs;
 #[path = "corpus/skipped.rs"]
 mod skipped;
+#[path = "corpus/view.rs"]
+mod view;
 
 use cognate::dataset;
 use cognate::dataset::command::{Command, Script, Step};

@@ -5,7 +5,7 @@ use super::output::StyleArgs;
 use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, complain_in_files, piped, recorded, remark, run};
 use cognate::dataset;
-use cognate::diagnostic::{Diagnostic, Severity, counted};
+use cognate::diagnostic::{Cause, Diagnostic, Severity, counted};
 use cognate::disk;
 use cognate::results::Run;
 use std::path::PathBuf;
@@ -82,8 +82,8 @@ fn convert_model(args: &Args) -> Outcome {
     let source =
         dataset::open(&args.input).map_err(|e| Failure::in_files(Exit::Input, e.into()))?;
     let reading = dataset::read_with(source, &args.set.iter().cloned().collect());
-    let is_left_out = |d: &&Diagnostic| d.code == "view_unsolved";
-    let is_mistake = |d: &Diagnostic| d.severity == Severity::Error && d.code != "view_unsolved";
+    let is_left_out = |d: &&Diagnostic| d.is(Cause::ViewUnsolved);
+    let is_mistake = |d: &Diagnostic| d.severity == Severity::Error && !d.is(Cause::ViewUnsolved);
     if reading.diagnostics.iter().any(is_mistake) {
         return Err(Failure::in_files(Exit::Input, reading.diagnostics));
     }

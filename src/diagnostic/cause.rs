@@ -52,6 +52,8 @@ pub enum Cause {
     Unsupported,
     /// a routine of the user's that is not there
     UserRoutine,
+    /// an element of a command file of Adams View that is not solved
+    ViewUnsolved,
 }
 
 impl Cause {
@@ -79,6 +81,7 @@ impl Cause {
             Self::UnknownName => "unknown_name",
             Self::Unsupported => "unsupported",
             Self::UserRoutine => "user_routine",
+            Self::ViewUnsolved => "view_unsolved",
         }
     }
 }

@@ -5,9 +5,11 @@
 
 mod model;
 mod run;
+mod view;
 
 pub use model::MODEL_CODES;
 pub use run::RUN_CODES;
+pub use view::VIEW_CODES;
 
 /// A code of a diagnostic, with its explanation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,9 +27,14 @@ pub fn code(name: &str) -> Option<&'static Code> {
     all().find(|code| code.name.eq_ignore_ascii_case(name))
 }
 
-/// Iterates over all codes: those of the language and of files, of models, of runs.
+/// Iterates over all codes: those of the language and of files, of models, of runs, of command
+/// files of Adams View.
 pub fn all() -> impl Iterator<Item = &'static Code> {
-    CODES.iter().chain(MODEL_CODES).chain(RUN_CODES)
+    CODES
+        .iter()
+        .chain(MODEL_CODES)
+        .chain(RUN_CODES)
+        .chain(VIEW_CODES)
 }
 
 /// The codes of the language, in the order in which a text is read; then those of files and

@@ -274,11 +274,32 @@ pub fn laws_of_commands(text: &str) {
 pub type Law = fn(&[u8]);
 
 /// What fuzzing calls, by the name of the target.
-pub const TARGETS: [(&str, Law); 3] = [
+pub const TARGETS: [(&str, Law); 4] = [
     ("dataset", fuzz_dataset),
     ("command", fuzz_command),
     ("model", fuzz_model),
+    ("view", fuzz_view),
 ];
+
+/// Any bytes as a command file of Adams View: read without harm, every place inside the file, and
+/// what has no mistake is written as a dataset that means the same.
+pub fn fuzz_view(bytes: &[u8]) {
+    let source = Source::from_bytes(Some("fuzz.cmd"), bytes);
+    let reading = read_source(source);
+    let text = &reading.dataset.source.text;
+    for d in &reading.diagnostics {
+        let inside = d
+            .span
+            .is_none_or(|s| s.start <= s.end && s.end <= text.len());
+        assert!(inside, "{d}");
+        assert!(!d.message.is_empty(), "a message");
+    }
+    let written = reading.model.to_text();
+    let again = read_text(&written);
+    if !reading.failed() && !again.failed() {
+        assert_eq!(again.model.to_text(), written);
+    }
+}
 
 /// Any bytes as a dataset: read without harm, and written as they were read.
 pub fn fuzz_dataset(bytes: &[u8]) {

@@ -2,7 +2,7 @@
 
 use crate::models;
 
-use models::{TARGETS, commands, dataset, fuzz_command, fuzz_dataset, fuzz_model};
+use models::{TARGETS, commands, dataset, fuzz_command, fuzz_dataset, fuzz_model, fuzz_view};
 use proptest::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -23,6 +23,7 @@ proptest! {
     fn any_bytes_are_read_without_harm(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         fuzz_dataset(&bytes);
         fuzz_command(&bytes);
+        fuzz_view(&bytes);
     }
 
     /// Texts that were right before some of their bytes were changed, lost or doubled.

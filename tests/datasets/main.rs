@@ -14,3 +14,4 @@ mod dataset;
 mod dataset_laws;
 mod effects;
 mod odd;
+mod view;

@@ -716,7 +716,8 @@ impl<'a> Interpreter<'a> {
         for piece in &argument.values {
             match self.item(*piece) {
                 Ok(item) => items.push(item),
-                Err(d) => self.db.say(d),
+                // nothing follows from what has not been understood
+                Err(d) => return self.db.say(d),
             }
         }
         let frame = match name {

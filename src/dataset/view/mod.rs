@@ -138,7 +138,7 @@ fn find_contradictions(reading: &mut Reading) {
     let mut records = dataset.records.iter().flatten();
     let mistaken = records.by_ref().filter(|r| r.mistaken).map(|r| r.element());
     let mistaken = model.with_readers_of_data(mistaken.collect());
-    let unsolved = out.iter().any(|d| d.code == "view_unsolved");
+    let unsolved = out.iter().any(|d| d.is(Cause::ViewUnsolved));
     for d in Model::contradictions(model) {
         let excused = d.element.as_ref().is_some_and(|e| mistaken.contains(e));
         // what is not read may hold what is missing

@@ -261,12 +261,12 @@ impl Maker<'_> {
     fn note_rates(&mut self, k: usize) {
         let rates = ["wx", "wy", "wz"];
         let mut given = rates.iter().filter_map(|w| self.db.number(k, w));
-        let is_told = self.db.said.borrow().iter().any(|d| d.code == "view_rates");
-        if self.db.units.in_degrees() && !is_told && given.any(|w| w != 0.0) {
+        if self.db.units.in_degrees() && !self.has_told_rates && given.any(|w| w != 0.0) {
+            self.has_told_rates = true;
             let what = "initial angular velocities are read in degrees per unit of time, the file's unit of angles";
             let d = Diagnostic {
                 severity: Severity::Note,
-                ..Diagnostic::warning("view_rates", what)
+                ..Diagnostic::warning("view_units", what)
             };
             self.say(k, "wz", d);
         }

@@ -1,7 +1,7 @@
 //! Joints, primitives, motions, couplers, gears, curves.
 
 use super::{Draft, Maker, Want};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 
 impl Maker<'_> {
     pub(super) fn make_constraints(&mut self) {
@@ -58,7 +58,7 @@ impl Maker<'_> {
     /// Says that an object is not read, which makes the model another one.
     pub(super) fn refuse(&self, k: usize, what: &str) {
         let name = self.db.inner_name(k);
-        let d = Diagnostic::error("view_unsolved", format!("{name}: {what} is not solved"));
+        let d = Diagnostic::error(Cause::ViewUnsolved, format!("{name}: {what} is not solved"));
         let d = d.help("switch it off (active = off) or delete it to solve the model without it");
         self.say(k, "", d);
     }

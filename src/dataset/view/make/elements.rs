@@ -5,7 +5,7 @@
 use super::Maker;
 use crate::dataset::view::database::{Attribute, Datum, Item};
 use crate::dataset::view::term::Term;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use std::rc::Rc;
 
 /// A function over the line between the markers of a spring.
@@ -35,7 +35,7 @@ impl Maker<'_> {
                 _ => {
                     let what = format!("{} of {definition}", self.db.inner_name(k));
                     let d = Diagnostic::error(
-                        "view_unsolved",
+                        Cause::ViewUnsolved,
                         format!("the user-defined element {what} is not solved"),
                     );
                     let d = d.help("springs, torsion springs, general motions and controls plants are; switch it off (active = off) to solve the model without it");

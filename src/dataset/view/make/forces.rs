@@ -1,7 +1,7 @@
 //! Forces, bushings, beams, springs, friction, contacts.
 
 use super::{Draft, Maker, Want};
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::{Cause, Diagnostic, Severity};
 use crate::model::{ElementId, ElementKind};
 
 impl Maker<'_> {
@@ -156,7 +156,7 @@ impl Maker<'_> {
             let what = "a matrix of a FIELD is taken as it stands, with angles in radians";
             let d = Diagnostic {
                 severity: Severity::Note,
-                ..Diagnostic::warning("view_rates", what)
+                ..Diagnostic::warning("view_units", what)
             };
             self.say(k, "stiffness_matrix", d);
         }
@@ -368,7 +368,7 @@ impl Maker<'_> {
                 "contact with {name}, a {what}, is not solved: its surface is not in the file"
             ),
         };
-        let d = Diagnostic::error("view_unsolved", what);
+        let d = Diagnostic::error(Cause::ViewUnsolved, what);
         let d =
             d.help("contacts know blocks, links, cylinders, ellipsoids, frusta, tori and planes");
         self.say(k, "i_geometry_name", d);

@@ -114,6 +114,7 @@ pub(super) struct Maker<'a> {
     /// numbers of a kind below this one are taken
     free_from: BTreeMap<ElementKind, u32>,
     pub records: Vec<Record>,
+    has_told_rates: bool,
 }
 
 /// A value on its way into a record.
@@ -217,6 +218,7 @@ impl<'a> Maker<'a> {
             taken: BTreeSet::new(),
             free_from: BTreeMap::new(),
             records: Vec::new(),
+            has_told_rates: false,
         }
     }
 
@@ -266,7 +268,12 @@ impl<'a> Maker<'a> {
                     }
                 }
                 _ if self.db.objects[k].is_idle => {}
-                _ => without.push((self.is_inner(k), object.head.start, k, kind)),
+                _ => {
+                    // what loops make has one place; elements stand where they were begun
+                    let is_inner = self.is_inner(k);
+                    let at = if is_inner { object.head.start } else { 0 };
+                    without.push((is_inner, at, k, kind));
+                }
             }
         }
         let grounds = without.iter().filter(|of| self.db.objects[of.2].is_ground);
