@@ -175,7 +175,14 @@ pub fn shown(model: &Model, dataset: &Dataset, id: ElementId) -> Result<String, 
         text += &format!(", line {}", place.line);
     }
     text.push('\n');
-    for line in dataset.statement(id).unwrap_or_default().lines() {
+    // of what commands of Adams View made, the statement that it becomes
+    let made = || {
+        let all = model.statements().into_iter();
+        let mut all = all.filter(|(of, _)| *of == id);
+        all.next().map(|(_, text)| text).unwrap_or_default()
+    };
+    let statement = dataset.statement(id).map_or_else(made, str::to_owned);
+    for line in statement.trim_end().lines() {
         text += &format!("  {}\n", line.trim_end());
     }
     if let Some(page) = manual::page(id.kind.keyword()) {

@@ -182,11 +182,14 @@ fn open(args: &Args) -> Result<(Sweep, String), Failure> {
             span: args.span,
         })?
     };
-    let model = job.reading.model;
+    let model = job.reading.model.clone();
     if let Err(error) = model.checked() {
         return Err(Failure::in_model(&job.reading.dataset, error));
     }
     let mut sweep = Sweep::new(model, job.steps);
+    if job.loads.is_none() {
+        sweep = sweep.with_design_variables(&job.reading);
+    }
     let options = args.integration.given_to(Options::default());
     sweep.options = args.limits.given_to(args.unsolved.given_to(options));
     let folder = args.model.parent().map(Path::to_path_buf);

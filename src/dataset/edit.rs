@@ -47,9 +47,11 @@ impl Dataset {
         found.then_some(text)
     }
 
-    /// Returns the indices of the statements of an element.
+    /// Returns the indices of the statements of an element; what commands of Adams View made has
+    /// none.
     fn items_of(&self, id: ElementId) -> impl DoubleEndedIterator<Item = usize> {
-        let all = self.records.iter().enumerate();
+        let written = self.records.len().min(self.syntax.items.len());
+        let all = self.records[..written].iter().enumerate();
         let mine = all.filter(move |(_, record)| {
             let row = record.as_ref().map(|r| (r.row.kind(), r.id));
             row == Some((Some(id.kind), Some(id.number)))

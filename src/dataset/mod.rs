@@ -98,6 +98,8 @@ pub struct Reading {
     pub diagnostics: Vec<Diagnostic>,
     /// what a command file of Adams View asks the solver for, as commands of it
     pub commands: Option<String>,
+    /// design variables of a command file of Adams View that are numbers, by their full names
+    pub variables: BTreeMap<String, f64>,
 }
 
 impl Reading {

@@ -40,5 +40,6 @@ mod results;
 mod runs;
 mod sweep;
 mod threads;
+mod view;
 mod viewer;
 mod written;

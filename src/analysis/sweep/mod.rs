@@ -28,10 +28,11 @@ use crate::analysis::system::closures::{Call, Hook};
 use crate::analysis::watch::Watch;
 use crate::arrange::Arrange;
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
-use crate::diagnostic::{Diagnostic, Error, counted};
+use crate::dataset::{self, Reading, Source};
+use crate::diagnostic::{Diagnostic, Error, Severity, counted};
 use crate::model::{ElementKind, Model};
 use crate::results::Status;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Sender, channel};
@@ -68,6 +69,10 @@ pub struct Sweep {
     pub folders: Vec<PathBuf>,
     /// closures that compute what `USER(…)` stands for
     hooks: Vec<Hook>,
+    /// the command file of Adams View that the model is of, and its design variables
+    view: Option<(Source, Vec<String>)>,
+    /// which of the values are those of design variables, by their names
+    designs: Vec<Option<String>>,
     idle: Idle,
 }
 
@@ -137,8 +142,28 @@ impl Sweep {
             options: Options::default(),
             folders: Vec::new(),
             hooks: Vec::new(),
+            view: None,
+            designs: Vec::new(),
             idle: Idle::default(),
         }
+    }
+
+    /// Lets design variables of a command file of Adams View be parameters, by their full names
+    /// (`.model.DV_1`); the model of each run is then read anew with their values.
+    #[must_use]
+    pub fn with_design_variables(mut self, reading: &Reading) -> Self {
+        if reading.is_view() {
+            let names = reading.variables.keys().cloned().collect();
+            self.view = Some((reading.dataset.source.clone(), names));
+        }
+        self
+    }
+
+    /// Returns the design variable that a name means.
+    fn design_variable(&self, name: &str) -> Option<String> {
+        let (_, names) = self.view.as_ref()?;
+        let mut found = names.iter().filter(|n| n.eq_ignore_ascii_case(name.trim()));
+        found.next().cloned()
     }
 
     /// Begins a sweep in which each run is one simulation up to `end`, with output at equal
@@ -172,7 +197,11 @@ impl Sweep {
     /// A name that means nothing in the model, with near names; a parameter that is there already,
     /// or that a command of the runs changes.
     pub fn parameter(&mut self, name: &str) -> Result<(), Error> {
-        let parameter = Parameter::new(&self.model, name)?;
+        let design = self.design_variable(name);
+        let parameter = match &design {
+            Some(name) => Parameter::of_design(name),
+            None => Parameter::new(&self.model, name)?,
+        };
         if self.parameters.iter().any(|p| p.is(&parameter)) {
             let what = format!("{} is set twice", parameter.name());
             return Err(Diagnostic::error("bad_sweep", what).into());
@@ -192,6 +221,7 @@ impl Sweep {
             return Err(d.help("take the command away, or the parameter").into());
         }
         self.parameters.push(parameter);
+        self.designs.push(design);
         self.idle = Idle::default();
         Ok(())
     }
@@ -428,12 +458,36 @@ impl Sweep {
         !self.commands.iter().all(simulates)
     }
 
+    /// Returns the model with other values of design variables; `None`: none is a parameter.
+    fn designed(&self, values: &[f64]) -> Result<Option<Model>, Error> {
+        let of = values.iter().zip(&self.designs);
+        let changed = of.filter_map(|(x, design)| Some((design.clone()?, *x)));
+        let changed: BTreeMap<String, f64> = changed.collect();
+        let Some((source, _)) = self.view.as_ref().filter(|_| !changed.is_empty()) else {
+            return Ok(None);
+        };
+        let reading = dataset::read_with(source.clone(), &changed);
+        let is_error = |d: &Diagnostic| d.severity == Severity::Error;
+        match reading.diagnostics.iter().find(|d| is_error(d)) {
+            Some(d) => Err(d.clone().into()),
+            None => Ok(Some(reading.model)),
+        }
+    }
+
     /// Sets the parameters and obeys the commands from the start.
     fn solve(&self, session: &mut Session, values: &[f64], crew: &Crew) -> Result<Status, Error> {
         let set = |model: &mut Model| {
-            let mut all = self.parameters.iter().zip(values);
-            all.try_for_each(|(parameter, &x)| parameter.set(model, x))
+            let all = self.parameters.iter().zip(values).zip(&self.designs);
+            let mut all = all.filter(|(_, design)| design.is_none());
+            all.try_for_each(|((parameter, &x), _)| parameter.set(model, x))
         };
+        if let Some(model) = self.designed(values)? {
+            session.model = model;
+            set(&mut session.model)?;
+            session.reset();
+            let mut hooks = Hooks(crew);
+            return obey(session, &self.commands, |_, _| {}, &mut hooks);
+        }
         // a list that became zero in an earlier run is not given any more
         if self.changes_more() || set(&mut session.model).is_err() {
             session.model.clone_from(&self.model);

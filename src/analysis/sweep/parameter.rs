@@ -59,6 +59,18 @@ impl Parameter {
         Self::named(model, name).map_err(placed)
     }
 
+    /// Stands for a design variable, which is set where the model is read.
+    pub(super) fn of_design(name: &str) -> Self {
+        Self {
+            row: STATEMENTS[0],
+            id: None,
+            argument: usize::MAX,
+            kind: Kind::Real { angle: false },
+            place: None,
+            name: name.to_owned(),
+        }
+    }
+
     fn named(model: &Model, name: &str) -> Result<Self, Error> {
         let (row, id, argument) = element(model, name)?;
         let arguments = row.arguments();

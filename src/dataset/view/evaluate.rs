@@ -232,6 +232,23 @@ impl Database {
         })
     }
 
+    /// Returns all design variables that are numbers, by their full names; fields of user-defined
+    /// elements are none.
+    pub fn design_variables(&self) -> std::collections::BTreeMap<String, f64> {
+        let is_inner = |k: &usize| {
+            let parent = Self::parent(&self.objects[*k].name).and_then(|p| self.find(p));
+            parent.is_some_and(|p| self.objects[p].kind == "ude instance")
+        };
+        let all = self.of_kind(super::VARIABLE).filter(|k| !is_inner(k));
+        let numbers = all.filter_map(|k| {
+            let Ok(Datum::Number(x)) = self.variable(k) else {
+                return None;
+            };
+            Some((self.objects[k].name.clone(), x))
+        });
+        numbers.collect()
+    }
+
     fn evaluated_values(&self, attribute: &Attribute, k: usize) -> Result<Vec<Datum>, Trouble> {
         if self.depth.get() > DEEPEST_CHAIN {
             return Err("it depends on itself, or on too many others".into());

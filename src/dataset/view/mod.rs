@@ -83,6 +83,7 @@ pub(super) fn read(source: Source, changed: &BTreeMap<String, f64>) -> Reading {
     let mut maker = make::Maker::new(&source, db);
     maker.make();
     let make::Maker { db, records, .. } = maker;
+    reading.variables = db.design_variables();
     let (steps, about) = script::commands(&source, &db, &simulations);
     let mut said = db.said.into_inner();
     said.extend(about);
