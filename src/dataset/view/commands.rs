@@ -186,6 +186,14 @@ pub(super) fn argument(row: &Row, typed: &str) -> Result<&'static str, Vec<&'sta
     match begun[..] {
         [one] => Ok(one),
         [] => {
+            // a product of inertia in its other order
+            let other = [("ixz", "izx"), ("iyx", "ixy"), ("izy", "iyz")];
+            let other = other
+                .iter()
+                .find(|(name, _)| name.eq_ignore_ascii_case(typed));
+            if let Some((_, name)) = other.filter(|(_, name)| row.arguments.contains(name)) {
+                return Ok(name);
+            }
             // plural and singular, and names that older versions had
             let alike = all.find(|a| {
                 let short = |x: &str| x.trim_end_matches('s').replace("_name", "");

@@ -89,6 +89,17 @@ pub(super) struct Object {
 /// Position and orientation in ground.
 pub(super) type Pose = crate::space::Frame<f64>;
 
+/// What three numbers of a location are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Coordinates {
+    #[default]
+    Cartesian,
+    /// radius, angle, height
+    Cylindrical,
+    /// radius, angle about z, angle from z
+    Spherical,
+}
+
 /// Sequence of angles of an orientation, by axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sequence {
@@ -118,6 +129,7 @@ pub(super) struct Database {
     pub frame: Option<String>,
     pub units: Units,
     pub sequence: Sequence,
+    pub coordinates: Coordinates,
     /// from here on a saved file gives expressions of numbers that it has given before
     pub is_saved: bool,
     /// values that a user gives to design variables, by their names in lower case
@@ -140,6 +152,7 @@ pub(super) struct Database {
 impl Database {
     /// Adds an object, or takes that which has its name already.
     pub fn object(&mut self, name: &str, kind: &'static str, head: Span) -> usize {
+        let name = &unmarked(name);
         self.poses.borrow_mut().clear();
         let key = name.to_ascii_lowercase();
         if let Some(&k) = self.places.get(&key)
@@ -171,6 +184,7 @@ impl Database {
 
     /// Returns the full name that a name stands for where a new object is made below a parent.
     pub fn full_name(&self, name: &str, parent: Option<&str>) -> String {
+        let name = &unmarked(name);
         if name.starts_with('.') {
             return name.to_owned();
         }
@@ -188,6 +202,7 @@ impl Database {
     /// Returns the object that a name stands for: in full, in the model, or in the part that was
     /// taken last.
     pub fn find(&self, name: &str) -> Option<usize> {
+        let name = &unmarked(name);
         let model = self.model.as_deref().unwrap_or_default();
         let of_part = self.part.as_ref().map(|part| format!("{part}.{name}"));
         let ways = match name.starts_with('.') {
@@ -293,5 +308,13 @@ impl Database {
                 self.reads_changed(a, seen) || self.reads_changed(b, seen)
             }
         }
+    }
+}
+
+/// Returns a name without the quotation marks around parts of it that hold blanks.
+fn unmarked(name: &str) -> String {
+    match name.contains('"') {
+        true => name.replace(['"', '\\'], ""),
+        false => name.to_owned(),
     }
 }

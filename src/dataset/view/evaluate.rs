@@ -106,7 +106,6 @@ impl Database {
         };
         let axes = ["_x", "_y", "_z"];
         let axis = axes.iter().position(|end| lower.ends_with(end));
-        let reading = Reading::of(k);
         match (argument, axis) {
             ("location", _) => return Ok(self.location_of(k)?.into()),
             ("orientation", _) => return Ok(self.angles_of(k)?.into()),
@@ -125,7 +124,7 @@ impl Database {
             .find(|(name, _)| **name == argument);
         match known {
             Some((_, attribute)) => {
-                let values = self.values(attribute, &reading)?;
+                let values = self.evaluated_values(attribute, k)?;
                 Ok(match <[Datum; 1]>::try_from(values) {
                     Ok([one]) => one,
                     Err(all) => Datum::List(all),

@@ -8,7 +8,7 @@
 //! Three numbers of `orientation` are angles of the file's sequence; an expression that gives all
 //! three, `({0, 90, 0})` or a function, gives those of body 3-1-3.
 
-use super::database::{Attribute, Database, Datum, Pose, Reference, Sequence};
+use super::database::{Attribute, Coordinates, Database, Datum, Pose, Reference, Sequence};
 use super::evaluate::Trouble;
 use crate::space::{Mat3, Vec3, rotation};
 
@@ -160,9 +160,30 @@ impl Database {
             return Ok(self.pose(other)?.position);
         }
         let numbers = three(&self.as_numbers(&Datum::List(values))?, "location")?;
+        let is_whole = match self.counted(attribute) {
+            Some(fixed) => fixed.is_whole,
+            None => attribute.is_whole(),
+        };
+        let numbers = match is_whole {
+            true => numbers,
+            false => self.cartesian(numbers),
+        };
         Ok(self
             .reference(k, self.frame_of(attribute))?
             .point(Vec3(numbers)))
+    }
+
+    /// Returns three numbers of a location as x, y, z.
+    fn cartesian(&self, [r, angle, third]: [f64; 3]) -> [f64; 3] {
+        let (s, c) = (angle * self.units.angle()).sin_cos();
+        match self.coordinates {
+            Coordinates::Cartesian => [r, angle, third],
+            Coordinates::Cylindrical => [r * c, r * s, third],
+            Coordinates::Spherical => {
+                let (across, along) = (third * self.units.angle()).sin_cos();
+                [r * across * c, r * across * s, r * along]
+            }
+        }
     }
 
     /// Returns the rotation that three angles, or an expression, give.

@@ -10,7 +10,7 @@
 //! | `syntax.rs` | words, arguments, values and their places |
 //! | `commands.rs` | the commands and arguments, and their abbreviations |
 //! | `term.rs`, `evaluate.rs`, `functions.rs`, `units.rs` | expressions and their values |
-//! | `interpret.rs` | commands obeyed: loops, branches, defaults |
+//! | `interpret.rs`, `making.rs` | commands obeyed: loops, branches, defaults; objects made |
 //! | `database.rs`, `attributes.rs` | objects by name |
 //! | `frames.rs` | where they stand |
 //! | `mass.rs` | masses of shapes |
@@ -27,6 +27,7 @@ mod frames;
 mod functions;
 mod interpret;
 mod make;
+mod making;
 mod mass;
 mod script;
 mod syntax;

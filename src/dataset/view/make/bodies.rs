@@ -24,7 +24,7 @@ impl Maker<'_> {
             }
             if object.kind.starts_with("constraint") || object.kind.starts_with("force") {
                 self.markers_at_place(k);
-            } else if object.kind == PART && !object.is_ground {
+            } else if object.kind == POINT_MASS || object.kind == PART && !object.is_ground {
                 self.marker_at_center(k);
             }
         }
@@ -192,6 +192,9 @@ impl Maker<'_> {
     fn stated(&self, k: usize, argument: &str) -> Option<[f64; 3]> {
         let attribute = self.db.given(k, argument)?;
         if argument == "orientation" && self.db.sequence != Default::default() {
+            return None;
+        }
+        if argument == "location" && self.db.coordinates != Default::default() {
             return None;
         }
         let owner = match self.db.objects[k].kind.starts_with("part") {

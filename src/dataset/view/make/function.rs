@@ -247,11 +247,19 @@ fn names(text: &str) -> Vec<Span> {
     let mut all = Vec::new();
     let mut at = 0;
     while at < bytes.len() {
+        let quoted = |at: usize| {
+            let inner = text.get(at..)?.strip_prefix(".\"")?;
+            inner.find('"').map(|length| at + length + 3)
+        };
         let dotted = bytes[at] == b'.' && bytes.get(at + 1).is_some_and(|b| begins(*b));
-        if begins(bytes[at]) || dotted {
+        if begins(bytes[at]) || dotted || quoted(at).is_some() {
             let start = at;
-            at += 1;
+            at = quoted(at).unwrap_or(at + 1);
             while at < bytes.len() {
+                if let Some(end) = quoted(at) {
+                    at = end;
+                    continue;
+                }
                 let goes_on = bytes[at] == b'.' && bytes.get(at + 1).is_some_and(|b| is_part(*b));
                 if !(is_part(bytes[at]) || goes_on) {
                     break;

@@ -78,6 +78,11 @@ impl Maker<'_> {
                 let at = self.marker(k, "point")?;
                 vector(&characteristic, "", component, &format!("{at},0"), frame)
             }
+            "measure angle" => {
+                let points = ["first_point", "middle_point", "last_point"];
+                let [first, middle, last] = points.map(|point| self.marker(k, point));
+                Some(self.degrees(format!("INCANG({},{},{})", first?, middle?, last?)))
+            }
             "measure orient" => self.orientation(k, &characteristic, component)?,
             "measure object" => self.of_object(k, &characteristic, component, frame)?,
             _ => None,
