@@ -74,8 +74,11 @@ fn refuse_mistakes(reading: &Reading) -> Result<(), Failure> {
         return Ok(());
     }
     let inside = |d: &Diagnostic| {
-        d.span
-            .is_some_and(|s| spans.iter().any(|i| i.start <= s.start && s.start <= i.end))
+        d.span.is_some_and(|s| {
+            // statements stand one after another, so only the last that begins before can hold it
+            let begun = spans.partition_point(|i| i.start <= s.start);
+            begun > 0 && s.start <= spans[begun - 1].end
+        })
     };
     let mut diagnostics = reading.diagnostics.clone();
     diagnostics.retain(|d| d.severity == Severity::Error && inside(d));
