@@ -164,26 +164,28 @@ fn write_named(out: &mut Lines, record: &Record) {
     write_record(out, record, &[]);
 }
 
-/// Lines being written.
+/// Lines being written, each with its end.
 #[derive(Default)]
-struct Lines(Vec<String>);
+struct Lines(String);
 
 impl Lines {
     fn push(&mut self, line: &str) {
-        self.0.push(line.to_owned());
+        self.0.push_str(line);
+        self.0.push('\n');
     }
     /// Adds to the end of the last line, after a blank.
     fn append(&mut self, text: &str) {
-        match self.0.last_mut() {
-            Some(line) => {
-                line.push(' ');
-                line.push_str(text.trim_end());
-            }
-            None => self.push(text),
+        if self.0.pop().is_some() {
+            self.0.push(' ');
         }
+        self.push(text.trim_end());
     }
-    fn text(&self, end: &str) -> String {
-        self.0.iter().flat_map(|l| [l.as_str(), end]).collect()
+    /// Returns the text with these ends of lines.
+    fn text(self, end: &str) -> String {
+        match end {
+            "\n" => self.0,
+            _ => self.0.replace('\n', end),
+        }
     }
 }
 
