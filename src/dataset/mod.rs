@@ -190,6 +190,7 @@ pub fn read_source(source: Source) -> Reading {
     }
     out.extend(overlooked::after_end(&source, syntax.after));
     out.extend(overlooked::given_again(&source, &records));
+    out.extend(overlooked::foreign(&source, &records));
     extension::read(&source, &syntax, &mut reading.model, out);
     let mistaken = reading.model.with_readers_of_data(mistaken);
     let places = Places::default();

@@ -350,15 +350,6 @@ The first argument is what runs: the step is done where it passes the second and
     STEP(0, 0, TIME, 1, 10)              write STEP(TIME, 0, 0, 1, 10)",
     },
     Code {
-        name: "step_order",
-        summary: "STEP, STEP5 or HAVSIN over TIME ends at a place in degrees (a warning)",
-        explanation: "\
-Places and heights stand in turns: HAVSIN(x, x0, h0, x1, h1) goes from h0 at x0 to h1 at x1. The dialog of Adams View asks
-for them in the order begin, end, initial, final, and an angle in degrees then stands where the end is read.
-
-    HAVSIN(TIME, 0, 0.5, 30D, 120D)      write HAVSIN(TIME, 0, 30D, 0.5, 120D)",
-    },
-    Code {
         name: "angles_of_several_axes",
         summary: "AX, AY or AZ of the same markers stand in one expression (a warning)",
         explanation: "\

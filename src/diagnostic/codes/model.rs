@@ -692,15 +692,13 @@ others they are zero for ever, whatever acts between the parts. Without J they a
     FX(21,11)                            another marker of the same part: FX(21,10)",
     },
     Code {
-        name: "nothing_turns",
-        summary: "an angle is asked about an axis about which the joint of the two parts does not turn (a warning)",
+        name: "step_order",
+        summary: "STEP, STEP5 or HAVSIN over TIME ends at a place in degrees (a warning)",
         explanation: "\
-A REVOLUTE or CYLINDRICAL joint turns about the z axes of its markers. WX, WY and WZ are components along the axes of their third
-marker, without one along those of ground; AX, AY and AZ are angles about the axes of J. Square to the joint's axis the velocity is zero for
-ever and the angle none of turning. Nothing is said where the component along that axis is asked, too.
+Places and heights stand in turns: HAVSIN(x, x0, h0, x1, h1) goes from h0 at x0 to h1 at x1. The dialog of Adams View asks
+for them in the order begin, end, initial, final, and an angle in degrees then stands where the end is read.
 
-    JOINT/1, REVOLUTE, I=21, J=11        of a shaft along x of ground
-    WZ(21,11)                            write WX(21,11), or WZ(21,11,11)",
+    HAVSIN(TIME, 0, 0.5, 30D, 120D)      write HAVSIN(TIME, 0, 30D, 0.5, 120D)",
     },
     Code {
         name: "model",

@@ -7,7 +7,7 @@
 
 use super::hashing::HashMap;
 use super::input::Input;
-use super::known::Known;
+use super::known::{self, Known};
 use super::node::{Node, Value};
 use super::operation::{BinaryOp, Comparison, UnaryOp, arithmetic_if};
 use super::tape::Taped;
@@ -614,6 +614,70 @@ impl Builder {
         let answer = self.found_or_new(node);
         self.write_node(node, answer);
         answer
+    }
+
+    /// Returns the node that equals this one, or records it; arguments of a node that is known are
+    /// taken from the end of the list.
+    pub(super) fn found_or_new(&mut self, node: Node) -> Value {
+        let newest = self.newest_operand(&node);
+        let (nodes, arguments) = (&self.nodes, &self.arguments);
+        let is_equal = |found: usize| known::equal(arguments, &nodes[found], &node);
+        let new = nodes.len() as u32;
+        let among_users = newest.map(|k| (k, self.known.user(k, is_equal)));
+        let found = match among_users {
+            Some((_, (Some(found), _))) => Ok(found),
+            Some((newest, (None, true))) => {
+                self.known.add_user(newest, new);
+                Err(())
+            }
+            Some((_, (None, false))) | None => {
+                let hash = known::hash(&self.arguments, &node) as u32;
+                let slot = self.known.slot(hash, is_equal);
+                slot.map_err(|slot| self.known.fill(slot, hash, new))
+            }
+        };
+        match found {
+            Ok(found) => {
+                if let Some(range) = node.list() {
+                    self.arguments.truncate(range.start);
+                }
+                Value(found)
+            }
+            Err(()) => {
+                self.nodes.push(node);
+                Value(new)
+            }
+        }
+    }
+
+    /// Finds a place for each node, after a tape has told where they are.
+    pub(super) fn find_again(&mut self) {
+        let mut again = Known::default();
+        for (k, node) in self.nodes.iter().enumerate() {
+            if matches!(node, Node::Input(_)) {
+                continue;
+            }
+            let among_users = |newest: &usize| again.user(*newest, |_| false).1;
+            match self.newest_operand(node).filter(among_users) {
+                Some(newest) => again.add_user(newest, k as u32),
+                None => {
+                    let hash = known::hash(&self.arguments, node) as u32;
+                    if let Err(slot) = again.slot(hash, |_| false) {
+                        again.fill(slot, hash, k as u32);
+                    }
+                }
+            }
+        }
+        again.probes = self.known.probes;
+        self.known = again;
+    }
+
+    /// Returns the index of the operand of a node that was recorded last.
+    #[inline]
+    fn newest_operand(&self, node: &Node) -> Option<usize> {
+        let mut newest = None;
+        self.operands(node, |v| newest = newest.max(Some(v.index())));
+        newest
     }
 
     /// Calls `f` with every operand of a node, in order.

@@ -5,7 +5,6 @@
 //! large scene, and a look at it costs more than all else that recording a node does; it holds the
 //! nodes without operands, and those whose newest operand has many users.
 
-use super::builder::Builder;
 use super::node::{Node, Value};
 
 /// Users of one newest operand that are looked through, at most.
@@ -29,7 +28,7 @@ impl Known {
     /// Looks for a node among the users of its newest operand; returns whether they are few, so
     /// that it is nowhere else.
     #[inline]
-    fn user(&mut self, newest: usize, is_equal: impl Fn(usize) -> bool) -> (Option<u32>, bool) {
+    pub fn user(&mut self, newest: usize, is_equal: impl Fn(usize) -> bool) -> (Option<u32>, bool) {
         let mut at = self.users.get(newest).map_or(NONE, |u| u.0);
         for _ in 0..MOST_USERS {
             if at == NONE {
@@ -46,7 +45,7 @@ impl Known {
 
     /// Adds a node to the users of its newest operand.
     #[inline]
-    fn add_user(&mut self, newest: usize, k: u32) {
+    pub fn add_user(&mut self, newest: usize, k: u32) {
         if self.users.len() <= k as usize {
             self.users.resize(k as usize + 1, (NONE, NONE));
         }
@@ -55,7 +54,7 @@ impl Known {
     }
 
     /// Returns the node of this hash, or the slot that is to hold it.
-    fn slot(&mut self, hash: u32, is_equal: impl Fn(usize) -> bool) -> Result<u32, usize> {
+    pub fn slot(&mut self, hash: u32, is_equal: impl Fn(usize) -> bool) -> Result<u32, usize> {
         if (self.n_taken + 1) * 4 > self.slots.len() * 3 {
             self.grow();
         }
@@ -74,7 +73,7 @@ impl Known {
         }
     }
 
-    fn fill(&mut self, slot: usize, hash: u32, k: u32) {
+    pub fn fill(&mut self, slot: usize, hash: u32, k: u32) {
         self.slots[slot] = (hash, k);
         self.n_taken += 1;
     }
@@ -93,110 +92,40 @@ impl Known {
     }
 }
 
-impl Builder {
-    /// Returns the node that equals this one, or records it; arguments of a node that is known are
-    /// taken from the end of the list.
-    pub(super) fn found_or_new(&mut self, node: Node) -> Value {
-        let newest = self.newest_operand(&node);
-        let (nodes, arguments) = (&self.nodes, &self.arguments);
-        let is_equal = |found: usize| equal(arguments, &nodes[found], &node);
-        let new = nodes.len() as u32;
-        let among_users = newest.map(|k| (k, self.known.user(k, is_equal)));
-        let found = match among_users {
-            Some((_, (Some(found), _))) => Ok(found),
-            Some((newest, (None, true))) => {
-                self.known.add_user(newest, new);
-                Err(())
-            }
-            Some((_, (None, false))) | None => {
-                let hash = self.hash(&node) as u32;
-                let slot = self.known.slot(hash, is_equal);
-                slot.map_err(|slot| self.known.fill(slot, hash, new))
-            }
-        };
-        match found {
-            Ok(found) => {
-                if let Some(range) = node.list() {
-                    self.arguments.truncate(range.start);
-                }
-                Value(found)
-            }
-            Err(()) => {
-                self.nodes.push(node);
-                Value(new)
-            }
-        }
-    }
-
-    /// Finds a place for each node, after a tape has told where they are.
-    pub(super) fn find_again(&mut self) {
-        let mut known = Known {
-            users: Vec::with_capacity(self.nodes.len()),
-            ..Known::default()
-        };
-        for (k, node) in self.nodes.iter().enumerate() {
-            if matches!(node, Node::Input(_)) {
-                continue;
-            }
-            let among_users = |newest: &usize| known.user(*newest, |_| false).1;
-            match self.newest_operand(node).filter(among_users) {
-                Some(newest) => known.add_user(newest, k as u32),
-                None => {
-                    let hash = self.hash(node) as u32;
-                    if let Err(slot) = known.slot(hash, |_| false) {
-                        known.fill(slot, hash, k as u32);
-                    }
-                }
-            }
-        }
-        known.probes = self.known.probes;
-        self.known = known;
-    }
-
-    /// Returns the index of the operand of a node that was recorded last.
-    #[inline]
-    fn newest_operand(&self, node: &Node) -> Option<usize> {
-        let mut newest = None;
-        self.operands(node, |v| newest = newest.max(Some(v.index())));
-        newest
-    }
-
-    fn hash(&self, node: &Node) -> u64 {
-        // all bits of a product reach all bits of the hash: numbers such as 2.5 have zeros in all
-        // low bits
-        let mix = |h: u64, word: u64| {
-            let product =
-                u128::from(h ^ word ^ 0x9E37_79B9_7F4A_7C15) * u128::from(0xD6E8_FEB8_6659_FD93u64);
-            (product >> 64) as u64 ^ product as u64
-        };
-        let pair = |a: Value, b: Value| u64::from(a.0) << 32 | u64::from(b.0);
-        match *node {
-            Node::Constant(bits) => mix(1, bits),
-            Node::Input(k) => mix(2, u64::from(k)),
-            Node::Unary(op, x) => mix(mix(3, op as u64), u64::from(x.0)),
-            Node::Whole(x, n) => mix(mix(4, u64::from(x.0)), n as u64),
-            Node::Binary(op, a, b) => mix(mix(5, op as u64), pair(a, b)),
-            Node::Compare(op, a, b) => mix(mix(6, op as u64), pair(a, b)),
-            Node::Select(c, yes, no) => mix(mix(7, u64::from(c.0)), pair(yes, no)),
-            Node::Lookup { table, order, x } => mix(
-                mix(8, u64::from(table) << 8 | u64::from(order)),
-                u64::from(x.0),
-            ),
-            Node::Partial { call, k } => mix(mix(11, u64::from(call.0)), u64::from(k)),
-            Node::If(_) => self.hash_list(9, node, mix),
-            Node::Call { function, .. } => self.hash_list(mix(10, function as u64), node, mix),
-        }
-    }
-
-    fn hash_list(&self, seed: u64, node: &Node, mix: impl Fn(u64, u64) -> u64) -> u64 {
-        self.arguments[node.list().unwrap_or(0..0)]
-            .iter()
-            .fold(seed, |h, v| mix(h, u64::from(v.0)))
+/// Returns the hash of a node.
+pub(super) fn hash(arguments: &[Value], node: &Node) -> u64 {
+    // all bits of a product reach all bits of the hash: numbers such as 2.5 have zeros in all
+    // low bits
+    let mix = |h: u64, word: u64| {
+        let product =
+            u128::from(h ^ word ^ 0x9E37_79B9_7F4A_7C15) * u128::from(0xD6E8_FEB8_6659_FD93u64);
+        (product >> 64) as u64 ^ product as u64
+    };
+    let pair = |a: Value, b: Value| u64::from(a.0) << 32 | u64::from(b.0);
+    let of_list = |seed: u64| {
+        let list = &arguments[node.list().unwrap_or(0..0)];
+        list.iter().fold(seed, |h, v| mix(h, u64::from(v.0)))
+    };
+    match *node {
+        Node::Constant(bits) => mix(1, bits),
+        Node::Input(k) => mix(2, u64::from(k)),
+        Node::Unary(op, x) => mix(mix(3, op as u64), u64::from(x.0)),
+        Node::Whole(x, n) => mix(mix(4, u64::from(x.0)), n as u64),
+        Node::Binary(op, a, b) => mix(mix(5, op as u64), pair(a, b)),
+        Node::Compare(op, a, b) => mix(mix(6, op as u64), pair(a, b)),
+        Node::Select(c, yes, no) => mix(mix(7, u64::from(c.0)), pair(yes, no)),
+        Node::Lookup { table, order, x } => mix(
+            mix(8, u64::from(table) << 8 | u64::from(order)),
+            u64::from(x.0),
+        ),
+        Node::Partial { call, k } => mix(mix(11, u64::from(call.0)), u64::from(k)),
+        Node::If(_) => of_list(9),
+        Node::Call { function, .. } => of_list(mix(10, function as u64)),
     }
 }
 
 /// Returns whether two nodes are the same operation of the same operands.
-fn equal(arguments: &[Value], a: &Node, b: &Node) -> bool {
+pub(super) fn equal(arguments: &[Value], a: &Node, b: &Node) -> bool {
     let same_lists = || match (a.list(), b.list()) {
         (Some(a), Some(b)) => arguments[a] == arguments[b],
         _ => false,
