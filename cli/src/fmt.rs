@@ -2,7 +2,7 @@
 
 use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, piped, remark, say};
-use cognate::dataset::{self, Reading};
+use cognate::dataset::{self, Reading, Source};
 use cognate::diagnostic::{Diagnostic, Severity};
 use cognate::disk;
 use std::path::PathBuf;
@@ -40,7 +40,9 @@ pub fn run(args: &Args) -> Outcome {
     let reading = dataset::read(&args.file).map_err(super::check::failure)?;
     refuse_mistakes(&reading)?;
     let text = reading.dataset.formatted();
-    let again = dataset::read_text(&text);
+    // as the same file: its name says which arguments it may have
+    let file = reading.dataset.source.file.as_deref();
+    let again = dataset::read_source(Source::from_text(file, text.as_str()));
     if again.model.to_text() != reading.model.to_text() {
         return Err(Failure {
             exit: Exit::Bug,
