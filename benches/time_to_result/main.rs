@@ -2,8 +2,8 @@
 //! it that solves, and beside MuJoCo where `python3` has it. Before them small models of the references, and the start of the program
 //! (goals: 5 ms, 2 ms).
 //!
-//! `cargo bench --bench time_to_result`, or with a word behind `--`: `small` for the small models alone, `chain` for the families whose
-//! names contain it; `-- chain 4`: four sizes, each twice the one before. The slope is that of log time over log size between the last
+//! `cargo bench --bench time_to_result`, or with a word behind `--`: `small` for the small models alone, `files` for files that are
+//! checked and formatted, `chain` for the families whose names contain it; `-- chain 4`: four sizes, each twice the one before. The slope is that of log time over log size between the last
 //! two sizes: 1 is linear.
 
 mod mujoco;
@@ -42,10 +42,13 @@ const FAMILIES: &[Family] = &[
     ("contacts", 100, contacts, Some(mujoco::contacts)),
     ("balls that bounce for a second", 50, balls, None),
     ("frictions", 100, frictions, None),
+    ("chain with frictions", 20, chain_with_frictions, None),
     ("pairs of coupled wheels", 100, coupled_wheels, None),
     ("chain of variables under a motion", 1000, variables, None),
 ];
 
+/// Parts of the smaller file that is checked and formatted.
+const FIRST_FILE: usize = 10_000;
 /// Runs of a size, of which the fastest counts.
 const RUNS: usize = 3;
 
@@ -84,6 +87,9 @@ fn main() {
         "{:36}{:>8}{:>14}{:>14}{:>8}{:>14}",
         "", "N", "file to files", "solving", "slope", "MuJoCo"
     );
+    if word.is_none_or(|w| "files".contains(w.as_str())) {
+        files(&program, &folder, sizes);
+    }
     for (name, first, dataset, other) in FAMILIES {
         if word.is_some_and(|w| !name.contains(w.as_str())) {
             continue;
@@ -115,6 +121,28 @@ fn main() {
         }
     }
     std::fs::remove_dir_all(&folder).expect("the folder can be removed");
+}
+
+/// Prints the time that files of free parts take that are checked and formatted, and how it grows.
+fn files(program: &Installed, folder: &Path, sizes: usize) {
+    let file = folder.join("model.adm");
+    let file = file.to_string_lossy();
+    for command in ["check", "fmt"] {
+        let mut before: Option<f64> = None;
+        for n in (0..sizes).map(|k| FIRST_FILE << k) {
+            write_model(folder, free_parts(n));
+            let times = (0..RUNS).map(|_| seconds(program, &[command, &file]));
+            let best = times.fold(f64::INFINITY, f64::min);
+            let slope = before.map_or(String::new(), |b| format!("{:.2}", (best / b).log2()));
+            let name = format!("{command} of free parts");
+            println!(
+                "{name:36}{n:>8}{:>14}{:>14}{slope:>8}",
+                milliseconds(best),
+                ""
+            );
+            before = Some(best);
+        }
+    }
 }
 
 /// Prints the medians of the start of the program and of small models, taken in turns.
@@ -416,6 +444,21 @@ fn frictions(n: usize) -> Dataset {
         let (body, _) = d.part([x, 0.0, 0.0], "");
         let joint = d.hinge(body, GROUND, [x, 0.5, 0.0]);
         d.line(&format!("FRICTION/{joint}, JOINT={joint}, MU_STATIC=0.3, MU_DYNAMIC=0.2, PIN_RADIUS=0.05, STICTION_TRANSITION_VELOCITY=0.1"));
+    }
+    d
+}
+
+fn chain_with_frictions(n: usize) -> Dataset {
+    let mut d = Dataset::new();
+    let mut carrier = GROUND;
+    for k in 0..n {
+        let at = [k as f64, 0.0, 0.0];
+        let (link, _) = d.part(at, "");
+        let joint = d.hinge(link, carrier, at);
+        d.line(&format!(
+            "FRICTION/{joint}, JOINT={joint}, MU_STATIC=0.3, MU_DYNAMIC=0.2, PIN_RADIUS=0.02"
+        ));
+        carrier = link;
     }
     d
 }

@@ -2,7 +2,7 @@
 
 use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, piped, remark, say};
-use cognate::dataset::{self, Reading};
+use cognate::dataset::{self, Reading, Source};
 use cognate::diagnostic::{Diagnostic, Severity};
 use cognate::disk;
 use std::path::PathBuf;
@@ -41,7 +41,9 @@ pub fn run(args: &Args) -> Outcome {
     super::run::refuse_view(&reading, "is formatted")?;
     refuse_mistakes(&reading)?;
     let text = reading.dataset.formatted();
-    let again = dataset::read_text(&text);
+    // as the same file: its name says which arguments it may have
+    let file = reading.dataset.source.file.as_deref();
+    let again = dataset::read_source(Source::from_text(file, text.as_str()));
     if again.model.to_text() != reading.model.to_text() {
         return Err(Failure {
             exit: Exit::Bug,
@@ -75,8 +77,11 @@ fn refuse_mistakes(reading: &Reading) -> Result<(), Failure> {
         return Ok(());
     }
     let inside = |d: &Diagnostic| {
-        d.span
-            .is_some_and(|s| spans.iter().any(|i| i.start <= s.start && s.start <= i.end))
+        d.span.is_some_and(|s| {
+            // statements stand one after another, so only the last that begins before can hold it
+            let begun = spans.partition_point(|i| i.start <= s.start);
+            begun > 0 && s.start <= spans[begun - 1].end
+        })
     };
     let mut diagnostics = reading.diagnostics.clone();
     diagnostics.retain(|d| d.severity == Severity::Error && inside(d));

@@ -7,7 +7,7 @@ use cognate::dataset::command::Simulate;
 use cognate::diagnostic::{Cause, Diagnostic, Severity, counted};
 use cognate::model::{ElementId, ElementKind, Model};
 use serde_json::json;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::Path;
 
 /// Time up to which motions are looked at where no command says when the run ends.
@@ -109,11 +109,9 @@ impl Foreseen {
         this.model_fails = this.found.iter().any(is_error);
         this.add_doubts(model);
         // the reader has told, with more advice, what can be seen without assembly
-        let told = |d: &Diagnostic| {
-            let what = |d: &Diagnostic| (d.code, d.subject(), d.argument);
-            reading.diagnostics.iter().any(|r| what(r) == what(d))
-        };
-        this.found.retain(|d| !told(d));
+        let what = |d: &Diagnostic| (d.code, d.subject(), d.argument);
+        let told: HashSet<_> = reading.diagnostics.iter().map(what).collect();
+        this.found.retain(|d| !told.contains(&what(d)));
         let found = std::mem::take(&mut this.found).into_iter();
         this.found = found.map(|d| reading.dataset.locate(d)).collect();
         this.stop = this.stop.map(|d| reading.dataset.locate(d));

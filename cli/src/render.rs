@@ -5,6 +5,7 @@ use anstream::{AutoStream, ColorChoice};
 use cognate::dataset::Source;
 use cognate::diagnostic::{Cause, Diagnostic, Severity, Subject};
 use cognate::disk;
+use std::collections::BTreeMap;
 use std::io;
 
 /// The texts that places refer to, by the name of their file; the name is empty for a text without
@@ -99,25 +100,28 @@ const MOST_NAMED: usize = 12;
 /// code.
 fn sorted_out(diagnostics: &[Diagnostic]) -> (Vec<&Diagnostic>, Vec<(&str, Vec<String>)>) {
     let mut shown: Vec<&Diagnostic> = Vec::new();
-    let mut alike: Vec<(&Diagnostic, Vec<String>)> = Vec::new();
+    let mut alike: Vec<(&str, Vec<String>)> = Vec::new();
+    // for each that can repeat: how often it is shown in full, and its row of `alike`
+    let mut known: BTreeMap<_, (usize, Option<usize>)> = BTreeMap::new();
     for d in diagnostics {
-        let same = |other: &Diagnostic| {
-            (other.code, other.severity, &other.help) == (d.code, d.severity, &d.help)
-        };
-        let before = shown.iter().filter(|s| same(s)).count();
-        let element = d.element.clone().filter(|_| d.is_any(&ALIKE));
-        let element = element.map(|e| Subject::from(e).named(d.name.as_deref()));
-        match element {
-            Some(element) if before >= FIRST_ALIKE => {
-                match alike.iter_mut().find(|(first, _)| same(first)) {
-                    Some((_, elements)) => elements.push(element),
-                    None => alike.push((d, vec![element])),
-                }
-            }
-            _ => shown.push(d),
+        if !d.is_any(&ALIKE) {
+            shown.push(d);
+            continue;
         }
+        let (full, row) = known.entry((d.code, d.severity, &d.help)).or_default();
+        let element = d.element.clone().filter(|_| *full >= FIRST_ALIKE);
+        let Some(element) = element else {
+            *full += 1;
+            shown.push(d);
+            continue;
+        };
+        let row = *row.get_or_insert_with(|| {
+            alike.push((d.code, Vec::new()));
+            alike.len() - 1
+        });
+        let element = Subject::from(element).named(d.name.as_deref());
+        alike[row].1.push(element);
     }
-    let alike = alike.into_iter().map(|(d, e)| (d.code, e)).collect();
     (shown, alike)
 }
 

@@ -19,6 +19,7 @@ pub(crate) mod lens;
 pub(crate) mod manual;
 pub(crate) mod mesh;
 mod overlooked;
+mod places;
 pub(crate) mod read;
 pub(crate) mod row;
 pub(crate) mod statement;
@@ -35,6 +36,7 @@ use crate::diagnostic::{Cause, Diagnostic, Error, Severity, Span};
 use crate::disk;
 use crate::model::{ElementKind, MarkerOwner, Model};
 use idle::Idle;
+use places::Places;
 use read::Table;
 use row::{Given, Record};
 use std::collections::{BTreeMap, BTreeSet};
@@ -56,6 +58,7 @@ pub struct Dataset {
     pub syntax: Syntax,
     /// one for each item: the statement as read, where its head could be understood
     pub records: Vec<Option<Record>>,
+    places: Places,
 }
 
 impl Dataset {
@@ -65,8 +68,7 @@ impl Dataset {
         let (None, Some(element)) = (&d.file, &d.element) else {
             return d;
         };
-        let mut records = self.records.iter().flatten();
-        match records.find(|r| r.element().eq_ignore_ascii_case(element)) {
+        match self.places.statement(&self.records, element) {
             Some(record) => Diagnostic {
                 name: record.place.name.clone(),
                 ..self.source.locate(d, record.head)
@@ -208,20 +210,23 @@ pub fn read_with(source: Source, variables: &BTreeMap<String, f64>) -> Reading {
     }
     out.extend(overlooked::after_end(&source, syntax.after));
     out.extend(overlooked::given_again(&source, &records));
+    out.extend(overlooked::foreign(&source, &records));
     extension::read(&source, &syntax, &mut reading.model, out);
     let mistaken = reading.model.with_readers_of_data(mistaken);
+    let places = Places::default();
     for d in contradictions(&reading.model, &not_understood) {
         // what seems to be missing may be what was not understood
         let excused = d.element.as_ref().is_some_and(|e| mistaken.contains(e));
         if excused && !d.is(Cause::UnknownElement) {
             continue;
         }
-        if let Some(given) = argument_of(&records, &d) {
+        let element = d.element.as_ref();
+        let record = element.and_then(|e| places.statement(&records, e));
+        if let Some(given) = record.and_then(|record| argument_of(record, &d)) {
             out.push(source.locate(d, given));
             continue;
         }
-        let mut settings = records.iter().flatten().filter(|r| r.id.is_none());
-        match settings.find(|r| d.line == 0 && d.element.as_ref() == Some(&r.element())) {
+        match record.filter(|r| r.id.is_none() && d.line == 0) {
             Some(record) => out.push(source.locate(d, record.head)),
             None => out.push(Diagnostic {
                 file: source.file.clone(),
@@ -240,6 +245,7 @@ pub fn read_with(source: Source, variables: &BTreeMap<String, f64>) -> Reading {
         source,
         syntax,
         records,
+        places,
     };
     reading
 }
@@ -270,10 +276,8 @@ fn contradictions(model: &Model, not_understood: &[Record]) -> Vec<Diagnostic> {
 }
 
 /// The place of the argument that a finding is about, if it stands in its element's statement.
-fn argument_of(records: &[Option<Record>], d: &Diagnostic) -> Option<Span> {
-    let (element, argument) = (d.element.as_ref()?, d.argument?);
-    let mut records = records.iter().flatten();
-    let record = records.find(|r| r.element() == *element)?;
+fn argument_of(record: &Record, d: &Diagnostic) -> Option<Span> {
+    let argument = d.argument?;
     let mut given = record.given.iter();
     let is_meant = |g: &&Given| {
         let known = record.row.argument(g.argument);

@@ -4,8 +4,8 @@
 use super::row::{Given, Meaning, Record};
 use super::statement;
 use super::syntax::Source;
-use crate::diagnostic::{Diagnostic, Span};
-use std::collections::BTreeMap;
+use crate::diagnostic::{Diagnostic, Severity, Span};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Doubts statements behind the END of a dataset: they are not read.
 pub(super) fn after_end(source: &Source, after: Span) -> Option<Diagnostic> {
@@ -85,6 +85,30 @@ pub(super) fn given_again(source: &Source, records: &[Option<Record>]) -> Vec<Di
         }
     }
     found
+}
+
+/// Says once which arguments a file of RecurDyn has that no statement here reads, at the first.
+pub(super) fn foreign(source: &Source, records: &[Option<Record>]) -> Option<Diagnostic> {
+    if !source.is_of_recurdyn() {
+        return None;
+    }
+    let closed = records.iter().flatten().filter(|r| !r.row.open());
+    let mut at = closed.filter(|r| !r.kept.is_empty()).peekable();
+    let first = at.peek()?.head;
+    let words: BTreeSet<&str> = at
+        .flat_map(|r| &r.kept)
+        .map(|(word, _)| &word[..])
+        .collect();
+    let words: Vec<&str> = words.into_iter().collect();
+    let what = format!(
+        "arguments of RecurDyn are accepted here, and not read: {}",
+        words.join(", ")
+    );
+    let note = Diagnostic {
+        severity: Severity::Note,
+        ..Diagnostic::warning("ignored", what)
+    };
+    Some(source.locate(note, first))
 }
 
 /// The two forms of an orientation: angles, and points on axes.

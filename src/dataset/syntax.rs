@@ -75,6 +75,13 @@ impl Source {
         self.encoding.encode(text)
     }
 
+    /// Returns whether the file is one of RecurDyn (`.rmd`), whose statements have further
+    /// arguments.
+    pub(super) fn is_of_recurdyn(&self) -> bool {
+        let ending = self.file.as_deref().and_then(|f| f.rsplit_once('.'));
+        ending.is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("rmd"))
+    }
+
     /// 1-based line and column (in characters) of a byte.
     pub fn place(&self, offset: usize) -> (usize, usize) {
         let line = self.line_starts.partition_point(|&s| s <= offset).max(1);

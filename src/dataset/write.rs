@@ -12,6 +12,7 @@ use super::syntax::{Item, Source, Token, TokenKind, Tokens};
 use super::value::Value;
 use crate::diagnostic::Span;
 use crate::model::{ElementId, ElementKind, MarkerOwner, Model};
+use std::collections::BTreeMap;
 
 /// Columns that Adams View fills.
 const WIDTH: usize = 80;
@@ -84,17 +85,23 @@ impl Model {
         let rows = STATEMENTS.iter().filter(|r| r.kind() == MARKER);
         let markers: Vec<Record> = rows.flat_map(|r| r.records(self)).collect();
         let owner = |r: &Record| r.id.and_then(|id| self.markers.get(&id)).map(|m| m.owner);
+        let mut of_body: BTreeMap<ElementId, Vec<&Record>> = BTreeMap::new();
+        for marker in &markers {
+            if let Some(body) = owner(marker).and_then(MarkerOwner::body) {
+                of_body.entry(body).or_default().push(marker);
+            }
+        }
         for row in STATEMENTS.iter().filter(|r| r.kind() != MARKER) {
             for record in row.records(self) {
                 write_named(&mut out, &record);
-                let own = match (row.kind(), record.id) {
-                    (Some(ElementKind::Part), Some(id)) => MarkerOwner::Part(id),
-                    (Some(ElementKind::PointMass), Some(id)) => MarkerOwner::PointMass(id),
+                let body = match (row.kind(), record.id) {
+                    (Some(kind @ (ElementKind::Part | ElementKind::PointMass)), Some(id)) => {
+                        kind.id(id)
+                    }
                     _ => continue,
                 };
-                for marker in markers.iter().filter(|m| owner(m) == Some(own)) {
-                    write_named(&mut out, marker);
-                }
+                let own = of_body.get(&body).into_iter().flatten();
+                own.for_each(|marker| write_named(&mut out, marker));
             }
             if row.kind() == Some(ElementKind::PointMass) {
                 // The rest: markers of bodies that are not solved, or of parts that do not exist.
@@ -157,26 +164,28 @@ fn write_named(out: &mut Lines, record: &Record) {
     write_record(out, record, &[]);
 }
 
-/// Lines being written.
+/// Lines being written, each with its end.
 #[derive(Default)]
-struct Lines(Vec<String>);
+struct Lines(String);
 
 impl Lines {
     fn push(&mut self, line: &str) {
-        self.0.push(line.to_owned());
+        self.0.push_str(line);
+        self.0.push('\n');
     }
     /// Adds to the end of the last line, after a blank.
     fn append(&mut self, text: &str) {
-        match self.0.last_mut() {
-            Some(line) => {
-                line.push(' ');
-                line.push_str(text.trim_end());
-            }
-            None => self.push(text),
+        if self.0.pop().is_some() {
+            self.0.push(' ');
         }
+        self.push(text.trim_end());
     }
-    fn text(&self, end: &str) -> String {
-        self.0.iter().flat_map(|l| [l.as_str(), end]).collect()
+    /// Returns the text with these ends of lines.
+    fn text(self, end: &str) -> String {
+        match end {
+            "\n" => self.0,
+            _ => self.0.replace('\n', end),
+        }
     }
 }
 

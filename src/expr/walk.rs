@@ -522,7 +522,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Writes a step anew whose second place stands before its first.
+    /// Writes a step anew whose second place stands before its first; a HAVSIN in the order of its
+    /// dialog, too: begin, end, initial, final.
     fn step_in_order(&self, ix: NodeIx, operands: &[f64]) -> Option<String> {
         let Node::Call {
             callee: Callee::Function(f @ (Function::Step | Function::Step5 | Function::Havsin)),
@@ -531,12 +532,17 @@ impl<'a> Walk<'a> {
         else {
             return None;
         };
-        let (&[x, x0, h0, x1, h1], &[_, from, _, to, _]) = (args.as_slice(), operands) else {
+        let (&[x, x0, h0, x1, h1], &[_, from, height, to, _]) = (args.as_slice(), operands) else {
             return None;
         };
         let [x, x0, h0, x1, h1] = [x, x0, h0, x1, h1].map(|arg| self.ast.written(arg));
         let name = f.name();
-        if from > to {
+        if f == Function::Havsin && from >= to && from < height {
+            Some(format!(
+                "it is read {}: what begins at {x0} and ends at {h0} is written {name}({x}, {x0}, {x1}, {h0}, {h1})",
+                f.signature()
+            ))
+        } else if from > to {
             Some(format!(
                 "the earlier place stands first: {name}({x}, {x1}, {h1}, {x0}, {h0})"
             ))

@@ -53,9 +53,15 @@ impl Pattern {
         // for each group, the last column that found it taken
         let mut taken: Vec<usize> = Vec::new();
         for j in order {
-            for &other in columns[j].iter().flat_map(|&i| &by_row[i]) {
-                if let Some(taken) = taken.get_mut(group_of[other]) {
+            // once all are taken, as by a full row, nothing further can be
+            let mut n_free = taken.len();
+            let mut others = columns[j].iter().flat_map(|&i| &by_row[i]);
+            while n_free > 0
+                && let Some(&other) = others.next()
+            {
+                if let Some(taken) = taken.get_mut(group_of[other]).filter(|t| **t != j) {
                     *taken = j;
+                    n_free -= 1;
                 }
             }
             let free = taken.iter().position(|&t| t != j).unwrap_or(taken.len());

@@ -12,12 +12,13 @@
 //! fills that row solves ρ = 0 by Newton's iteration.
 
 use super::Scene;
-use super::configuration::{Configuration, Configured};
+use super::configuration::{Configuration, Configured, Way};
 use super::equations::{Equations, Lack, Unsupported};
 use crate::expr::measures::Measure;
-use crate::expr::program::{Builder, Folding, Input, Program, Sym, Value};
+use crate::expr::program::{Builder, Folding, Input, Program, Sym, Value, Work};
 use crate::numeric::connected::{SparseRow, connected};
-use crate::scalar::Scalar;
+use crate::random::Random;
+use crate::scalar::{Dual, Scalar};
 use crate::scene::asker::Asker;
 use std::cell::RefCell;
 
@@ -134,6 +135,13 @@ pub(super) fn inputs<'b>(scene: &Scene, builder: &'b RefCell<Builder>) -> Vec<Sy
     numbers
 }
 
+/// Returns the first `n` unknowns, as they are recorded.
+fn placeholders(n: usize, builder: &RefCell<Builder>) -> Vec<Sym<'_>> {
+    (0..n)
+        .map(|k| Sym::input(Input::Slot(PLACEHOLDER + k as u32), builder))
+        .collect()
+}
+
 /// ρ with unknowns as inputs, and ∂ρ/∂z by rows where it is not zero.
 fn residuals<'b>(
     scene: Configured<'_>,
@@ -141,9 +149,7 @@ fn residuals<'b>(
     builder: &'b RefCell<Builder>,
 ) -> (Vec<Sym<'b>>, Vec<Vec<(usize, Value)>>) {
     let n = scene.loops.len();
-    let z: Vec<Sym<'b>> = (0..n)
-        .map(|k| Sym::input(Input::Slot(PLACEHOLDER + k as u32), builder))
-        .collect();
+    let z = placeholders(n, builder);
     let at = Equations::with_unknowns(scene, numbers, z.clone(), false);
     let rho = at.loop_residuals();
     let recorder = &mut *builder.borrow_mut();
@@ -153,8 +159,64 @@ fn residuals<'b>(
     (rho, jacobian)
 }
 
+/// Returns true if every unknown has an equation and ρ is surely not linear in them: its second
+/// derivatives are not all zero at some place.
+///
+/// ```text
+/// g = ∂(w·ρ)/∂z        ρ(z + εd) = ρ + ε J d        g(z + εd) = g + ε ∂g/∂z d
+/// ```
+///
+/// with random weights w and a random direction d. What is not zero there is no zero anywhere in a
+/// formula, which takes one sweep; all entries of J, of reactions that each depend on all others,
+/// take one for each of them.
+fn is_surely_nonlinear(scene: Configured<'_>) -> bool {
+    let builder = RefCell::new(Builder::new(Folding::Structural));
+    let numbers = inputs(&scene, &builder);
+    let z = placeholders(scene.loops.len(), &builder);
+    // whatever way is chosen later: this one grows with the depth of a forest, not with its cube
+    let mut configuration = scene.configuration.clone();
+    configuration.elimination.way = Way::ArticulatedBodies;
+    let scene = scene.scene.within(&configuration);
+    let at = Equations::with_unknowns(scene, &numbers, z.clone(), false);
+    let rho = at.loop_residuals();
+    let mut random = Random(0);
+    let weights = rho.iter().map(|_| Sym::Constant(1.0 + random.unit()));
+    let sum = rho.iter().zip(weights).map(|(&r, w)| r * w);
+    let sum = sum.fold(Sym::Constant(0.0), |sum, x| sum + x);
+    let recorder = &mut *builder.borrow_mut();
+    let variables: Vec<Value> = z.iter().map(|z| z.value(recorder)).collect();
+    let mut outputs: Vec<Value> = rho.iter().map(|r| r.value(recorder)).collect();
+    let sum = sum.value(recorder);
+    outputs.extend(recorder.gradient(sum, &variables));
+    let program = recorder.finish(&outputs);
+    let mut place = |input: &Input| match *input {
+        Input::Slot(k) if k >= PLACEHOLDER => {
+            let guess = scene.loops[(k - PLACEHOLDER) as usize].guess;
+            Dual {
+                re: guess + random.unit(),
+                eps: [1.0 + random.unit()],
+            }
+        }
+        Input::Slot(k) if scene.layout.q().contains(&(k as usize)) => {
+            Dual::constant(scene.initial_q[k as usize - scene.layout.q().start])
+        }
+        _ => Dual::constant(random.unit()),
+    };
+    let there: Vec<Dual<1>> = program.inputs().iter().map(&mut place).collect();
+    let mut values = vec![Dual::constant(0.0); outputs.len()];
+    program.eval(&there, &mut Work::default(), &mut values);
+    let (rho, gradient) = values.split_at(rho.len());
+    let is_there = |x: f64| x != 0.0 && x.is_finite();
+    rho.iter().all(|r| is_there(r.eps[0]))
+        && gradient.iter().all(|g| is_there(g.re))
+        && gradient.iter().any(|g| is_there(g.eps[0]))
+}
+
 /// Returns true if ρ is linear in its unknowns.
 fn linear(scene: Configured<'_>) -> Result<bool, Vec<Unsupported>> {
+    if is_surely_nonlinear(scene) {
+        return Ok(false);
+    }
     let builder = RefCell::new(Builder::new(Folding::Structural));
     let numbers = inputs(&scene, &builder);
     let (_, jacobian) = residuals(scene, &numbers, &builder);

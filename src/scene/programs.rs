@@ -486,6 +486,16 @@ pub fn rate<S: Scalar>(at: &Equations<'_, S>) -> Vec<S> {
     out
 }
 
+/// The rates as far as they are found without eliminating: loads along the free coordinates stand
+/// in the place of accelerations, and the strength of rows is that of all.
+pub fn loads<S: Scalar>(at: &Equations<'_, S>) -> Vec<S> {
+    let mut out = at.position_rates();
+    out.extend(at.balance(&[]));
+    out.extend(at.state_rates());
+    out.push(S::one());
+    out
+}
+
 /// Weight of a coordinate's change in a projection: angles count as such, lengths against the reach
 /// of its mechanism.
 pub fn weights(scene: &Scene) -> Vec<f64> {

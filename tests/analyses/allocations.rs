@@ -1,9 +1,11 @@
-//! Steps, interpolation and root finding allocate nothing once a run has started.
+//! Steps, interpolation and root finding allocate nothing once a run has started; what is done with a file allocates as much as the
+//! file is long.
 
 use crate::problems;
 
 use crate::counting;
 
+use cognate::dataset;
 use cognate::internals::numeric::event::Locator;
 use cognate::numeric::{METHODS, Method, Options, ode_method};
 use counting::allocations_so_far;
@@ -56,4 +58,27 @@ fn steps_allocate_nothing() {
         let count = allocations(&mut *method, &mut problem, &Pendulum::START, 3);
         assert_eq!(count, 0, "{} allocates", row.name);
     }
+}
+
+/// Allocations of reading a dataset of parts that fall, placing what is doubted of each, and writing it.
+fn allocations_of_a_file(n: usize) -> usize {
+    let mut text = String::from("free parts\nPART/1, GROUND\nACCGRAV/KGRAV=-9.81\n");
+    for k in 2..n + 2 {
+        text += &format!("PART/{k}, MASS=1, CM={k}, IP=1,1,1\nMARKER/{k}, PART={k}\n");
+    }
+    let before = allocations_so_far();
+    let reading = dataset::read_text(&text);
+    let doubts = reading.model.doubts().into_iter();
+    let placed: Vec<_> = doubts.map(|d| reading.dataset.locate(d)).collect();
+    // one more says that there are no units
+    assert_eq!((placed.len(), placed[n - 1].line), (n + 1, 2 * n + 2));
+    assert!(reading.dataset.formatted().len() > text.len());
+    assert!(reading.model.to_text().len() > text.len());
+    allocations_so_far() - before
+}
+
+#[test]
+fn what_is_done_with_a_file_allocates_as_much_as_it_is_long() {
+    let [small, large] = [200, 800].map(allocations_of_a_file);
+    assert!(large < 5 * small, "{small} for 200 parts, {large} for 800");
 }

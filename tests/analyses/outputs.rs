@@ -265,7 +265,7 @@ fn a_spline_over_an_angle_that_motions_turn_is_told_before_a_run_and_in_it() {
         for (angle, tilt, factor) in angles {
             for part in [0.8, 1.2] {
                 let text = read_over(angle, drive, tilt, part * factor * most);
-                let mut s = running::session(&text, &["DX(20,1)"], 1e-6);
+                let s = running::session(&text, &["DX(20,1)"], 1e-6);
                 let is_said = |said: &str| said.contains("SPLINE/1");
                 let before = s.preview(Analysis::Dynamic, 2.0);
                 let before = before.iter().any(|d| is_said(&d.to_string()));

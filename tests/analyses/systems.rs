@@ -698,7 +698,7 @@ fn a_spline_whose_data_end_before_its_motion_does_is_told_without_a_run() {
         ("1.9*SIN(PI*TIME)", Some("-1.9")),
         ("STEP(TIME,1,0,2,2)", None),
     ] {
-        let mut session = running::session(&model(motion), &["TIME"], 1e-6);
+        let session = running::session(&model(motion), &["TIME"], 1e-6);
         let found = session.preview(running::Analysis::Transient, 3.0);
         let outside = found.iter().find(|d| d.code == "outside_data");
         match (told, outside) {

@@ -1055,6 +1055,54 @@ fn what_is_found_in_an_element_whose_data_was_not_understood_may_follow_from_tha
 }
 
 #[test]
+fn an_angle_about_an_axis_square_to_that_of_the_joint_is_told_with_the_one_that_turns() {
+    let doubts = |asked: &str| {
+        let text = format!(
+            "a shaft along x\nPART/1, GROUND\nMARKER/10, PART=1\nMARKER/11, PART=1, REULER=90D,90D,0D\n\
+             PART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nMARKER/21, PART=2, REULER=90D,90D,0D\n\
+             PART/3, MASS=1, CM=30, IP=1,1,1\nMARKER/30, PART=3\n\
+             JOINT/1, REVOLUTE, I=21, J=11\nVARIABLE/1, FUNCTION={asked}\nEND\n"
+        );
+        let found = dataset::read_text(&text).model.doubts().into_iter();
+        let found = found.filter(|d| d.code == "nothing_turns");
+        found
+            .map(|d| format!("{} | {}", d.message, d.help.join(" | ")))
+            .collect::<Vec<_>>()
+    };
+    for (asked, said) in [
+        (
+            "WZ(21,11)",
+            "FUNCTION: WZ(21,11) is zero for ever: JOINT/1 turns about x of ground | it turns by WX(21,11)",
+        ),
+        (
+            "WX(20,10,21)",
+            "FUNCTION: WX(20,10,21) is zero for ever: JOINT/1 turns about z of MARKER/21 | it turns by WZ(20,10,21)",
+        ),
+        (
+            "2*AZ(20,10)",
+            "FUNCTION: AZ(20,10) does not turn: JOINT/1 turns about x of MARKER/10 | it turns by AX(20,10)",
+        ),
+        (
+            "WY(20)",
+            "FUNCTION: WY(20) is zero for ever: JOINT/1 turns about x of ground | it turns by WX(20)",
+        ),
+    ] {
+        assert_eq!(doubts(asked), [said], "{asked}");
+    }
+    for asked in [
+        "WZ(21,11,11)",
+        "WX(21,11)+WY(21,11)+WZ(21,11)",
+        "AZ(21,11)",
+        "AX(20,10)",
+        // of axes that the joint does not hold, and of parts that it does not join
+        "WZ(21,11,30)",
+        "WZ(30,10)",
+    ] {
+        assert_eq!(doubts(asked), [""; 0], "{asked}");
+    }
+}
+
+#[test]
 fn a_force_between_markers_between_which_nothing_acts_is_told_with_what_acts_there() {
     let doubts = |asked: &str| {
         let text = format!(

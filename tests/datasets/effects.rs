@@ -52,7 +52,7 @@ fn outcome(text: &str, analysis: Analysis) -> String {
         error: None,
         ..options()
     };
-    let mut session = running::begin(reading.model.clone(), "effect", options());
+    let session = running::begin(reading.model.clone(), "effect", options());
     for d in session
         .preview(analysis, 0.3)
         .iter()

@@ -46,7 +46,7 @@ mod tilts;
 
 use crate::analysis::linear::{self, Linearization};
 use crate::analysis::session::columns::Columns;
-use crate::analysis::system::{System, closures};
+use crate::analysis::system::{Purpose, System, closures};
 use crate::analysis::time::output::Output;
 use crate::analysis::warning::AssemblyWarning;
 use crate::analysis::warning::RunWarning;
@@ -198,6 +198,8 @@ pub struct Session {
     scratch: columns::Scratch,
     /// rows that the commands to come will add, as far as they say
     rows_to_come: usize,
+    /// why equations are recorded
+    purpose: Purpose,
     /// whether commands will have equations recorded that are much like those of before
     records_again: bool,
     /// takes rows while simulations go on
@@ -282,6 +284,7 @@ impl Session {
             gaps: Gaps::default(),
             scratch: columns::Scratch::default(),
             rows_to_come: 0,
+            purpose: Purpose::Motion,
             records_again: false,
             receiver: None,
             limit,

@@ -2,6 +2,7 @@
 //! its first step.
 
 use super::{Analysis, Session};
+use crate::analysis::system::Purpose;
 use crate::analysis::time::valueless::{self, Loss};
 use crate::analysis::verify::driving::driving;
 use crate::analysis::warning::{AssemblyWarning, Warning};
@@ -30,8 +31,9 @@ fn is_rounding(warning: &Warning, mechanism: f64) -> bool {
 
 impl Session {
     /// Brings the model into its first state and returns what is wrong with it, and what is
-    /// doubtful; motions are looked at until `end`.
-    pub fn preview(&mut self, analysis: Analysis, end: f64) -> Vec<Diagnostic> {
+    /// doubtful; motions are looked at until `end`. Nothing is to move afterwards.
+    pub fn preview(mut self, analysis: Analysis, end: f64) -> Vec<Diagnostic> {
+        self.purpose = Purpose::Preview;
         let mut found = match self.previewed(analysis, end) {
             Ok(found) | Err(found) => found,
         };

@@ -11,6 +11,7 @@ use crate::expr::program::{Program, Work};
 use crate::model::{ElementId, ElementKind, Family, Formula, Model, Text};
 use crate::scene::layout::Layout;
 use crate::scene::programs::record_with_complaints;
+use crate::scene::recorder::{self, Recorder};
 
 /// Distance outside the data, relative to their range, that rounding makes.
 const ROUNDING: f64 = 1e-9;
@@ -113,24 +114,31 @@ impl Readings {
     /// Looks at the arguments that time alone decides, as markers that motions move do, until
     /// `end`; angles count their turns on the way.
     pub fn see_driven(&mut self, system: &System, formulas: &[usize], end: f64) {
+        if formulas.is_empty() {
+            return;
+        }
         let mut system = system.clone();
         let l = system.scene.layout;
         let is_known = |program: &Program| {
             let mut places = (0..system.numbers.len()).filter(|&place| program.reads(place));
             places.all(|place| place == Layout::TIME || l.turns().contains(&place))
         };
+        // all of one instant, which is recorded once
+        let builder = recorder::builder();
+        let recorder = Recorder::new(system.configured(), &builder);
+        let program = |value| recorder.program_with_complaints(&[value]).0;
         // angles that follow from time and from their own turns
-        let angles = (0..l.turns().len()).map(|k| {
-            let at = system.configured();
-            is_known(&record_with_complaints(at, |at| vec![at.turned_angle(k).angle]).0)
-        });
-        let driven: Vec<bool> = angles.collect();
+        let mut driven: Vec<Option<bool>> = vec![None; l.turns().len()];
+        let mut is_driven = |k: usize| {
+            let angle = || program(recorder.at().turned_angle(k).angle);
+            *driven[k].get_or_insert_with(|| is_known(&angle()))
+        };
         let programs = (formulas.iter().enumerate()).filter_map(|(call, &formula)| {
-            let at = system.configured();
-            let (program, _) = record_with_complaints(at, |at| vec![at.formula(formula)]);
-            let mut turns = l.turns().zip(&driven);
-            let all_driven = turns.all(|(place, driven)| *driven || !program.reads(place));
-            (is_known(&program) && all_driven).then_some((call, program))
+            let program = program(recorder.at().formula(formula));
+            let mut turns = l.turns().enumerate();
+            let all_driven =
+                is_known(&program) && turns.all(|(k, place)| !program.reads(place) || is_driven(k));
+            all_driven.then_some((call, program))
         });
         let programs: Vec<(usize, Program)> = programs.collect();
         if programs.is_empty() {

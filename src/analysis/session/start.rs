@@ -17,7 +17,7 @@ use crate::analysis::start::{
     coincident, embedded, initial_conditions, leap, misalignment, velocities,
 };
 use crate::analysis::system::external_inputs::ExternalInputs;
-use crate::analysis::system::{System, complaints};
+use crate::analysis::system::{Purpose, System, complaints};
 use crate::analysis::system::{closures, samples};
 use crate::analysis::verify::culprit::blamed;
 use crate::analysis::warning::{AssemblyWarning, Warning};
@@ -31,6 +31,7 @@ use crate::scene::configuration::Configured;
 use crate::scene::contacts::Shell;
 use crate::scene::external_inputs::ExternalInput;
 use crate::scene::layout::Layout;
+use crate::scene::recorder::Recorder;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -344,14 +345,17 @@ impl Session {
         let hooks = self.hooks.clone();
         self.looking(SetUp::Velocities, watch, |session, look| {
             let (scene, configuration) = (start.scene, start.configuration);
-            System::recorded_while(scene, configuration, &hooks, look, |system, recorder| {
+            let purpose = session.purpose;
+            let then = |system: &mut System, recorder: &Recorder<'_, '_>| {
                 session.put(system, (t, &y), mode)?;
-                if mode != LINEAR && !session.columns.is_empty() {
+                let shows = purpose == Purpose::Motion && mode != LINEAR;
+                if shows && !session.columns.is_empty() {
                     let columns = session.columns.program_beside(recorder, &system.numbers);
                     session.columns_at_start = Some(columns);
                 }
                 Ok(())
-            })
+            };
+            System::recorded_while(scene, configuration, &hooks, purpose, look, then)
         })
     }
 

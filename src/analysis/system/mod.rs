@@ -57,6 +57,7 @@ use crate::scene::recorder::Recorder;
 use bounds::{Watched, What};
 use branches::Branches;
 use closures::Hook;
+pub(in crate::analysis) use recorded::Purpose;
 use recorded::Recorded;
 pub(in crate::analysis) use rows::RowGradients;
 use singular_step::SingularSteps;
@@ -128,14 +129,15 @@ impl System {
             scene,
             configuration,
             hooks,
+            Purpose::Motion,
             &mut || Ok(()),
             |_, _| Ok(()),
         )?)
     }
 
-    /// Records the programs of a scene, with the closures that its hooks refer to; `look` is asked
-    /// between them whether to go on. `then` may bring the system into its state, and record more
-    /// of what the programs were recorded of: kinematics and reactions are there.
+    /// Records the programs of a scene for a purpose, with the closures that its hooks refer to;
+    /// `look` is asked between them whether to go on. `then` may bring the system into its state,
+    /// and record more of what the programs were recorded of: kinematics and reactions are there.
     ///
     /// # Errors
     /// Functions that the equations cannot supply, and what `look` and `then` answer.
@@ -143,6 +145,7 @@ impl System {
         scene: Arc<Scene>,
         mut configuration: Configuration,
         hooks: &[Hook],
+        purpose: Purpose,
         look: look::Look<'_>,
         then: impl FnOnce(&mut Self, &Recorder<'_, '_>) -> Result<(), Vec<Diagnostic>>,
     ) -> Result<Self, Vec<Diagnostic>> {
@@ -172,7 +175,7 @@ impl System {
             Ok(system)
         };
         let q = &scene.initial_q;
-        Recorded::record(&scene, configuration, q, hooks, look, of)
+        Recorded::record(&scene, configuration, q, hooks, purpose, look, of)
     }
 
     /// Goes on with other rows, whose pivots are measured at the present positions.
@@ -189,6 +192,7 @@ impl System {
             configuration,
             q,
             &self.hooks,
+            Purpose::Motion,
             look,
             |r, c, _| Ok((r, c)),
         )?;

@@ -74,6 +74,16 @@ pub(in crate::analysis) struct Recorded {
     pub downstream: Option<Box<DownstreamRates>>,
 }
 
+/// The reason why the programs of a scene are recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::analysis) enum Purpose {
+    /// the scene is to move
+    Motion,
+    /// its start is looked at, and nothing moves: loads stand in the place of accelerations, which
+    /// take most of the time of recording
+    Preview,
+}
+
 impl Recorded {
     /// Records the programs of a scene, and chooses how accelerations are eliminated: pivots are
     /// measured at the positions `q`, and the shorter rate is kept. The hooks of the scene refer to
@@ -87,6 +97,7 @@ impl Recorded {
         mut configuration: Configuration,
         q: &[f64],
         hooks: &[Hook],
+        purpose: Purpose,
         look: Look<'_>,
         then: impl FnOnce(Self, Configuration, &Recorder<'_, '_>) -> Result<T, Vec<Diagnostic>>,
     ) -> Result<T, Vec<Diagnostic>> {
@@ -94,7 +105,7 @@ impl Recorded {
         look()?;
         let ways = ways(&configuration);
         let builders = [recorder::builder(), recorder::builder()];
-        let (together, recorder) = record_together(scene, &ways, &builders, look)?;
+        let (together, recorder) = record_together(scene, &ways, &builders, purpose, look)?;
         look()?;
         configuration.elimination.way = recorder.scene().configuration.elimination.way;
         let here = scene.within(&configuration);
@@ -202,14 +213,19 @@ fn record_together<'s, 'b>(
     scene: &'s Scene,
     [first, second]: &'s [Configuration; 2],
     builders: &'b [RefCell<Builder>; 2],
+    purpose: Purpose,
     look: Look<'_>,
 ) -> Result<(Together, Recorder<'s, 'b>), Vec<Diagnostic>> {
     let rows_where_loops_close = first.elimination.way == Way::RowsWhereLoopsClose;
     let mut recorder = Recorder::new(scene.within(first), &builders[0]);
     look()?;
-    let mut rate = programs::rate(recorder.at());
+    let mut rate = match purpose {
+        Purpose::Motion => programs::rate(recorder.at()),
+        Purpose::Preview => programs::loads(recorder.at()),
+    };
     look()?;
-    if !rows_where_loops_close && scene.depth() <= MAX_DEPTH_OF_MATRIX {
+    let has_choice = !rows_where_loops_close && purpose == Purpose::Motion;
+    if has_choice && scene.depth() <= MAX_DEPTH_OF_MATRIX {
         let other = match scene.loops.is_empty() {
             true => recorder.eliminating(second),
             // unknowns of loops are eliminated anew

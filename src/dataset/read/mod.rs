@@ -278,7 +278,7 @@ impl<'a> Reader<'a> {
                 let message = format!("{word} may be {}", names.join(" or "));
                 return self.fail("ambiguous_argument", name.span, message);
             }
-            Meaning::Unknown if record.row.open() => {
+            Meaning::Unknown if record.row.open() || self.source.is_of_recurdyn() => {
                 let text = if equals {
                     self.raw(true)?
                 } else {

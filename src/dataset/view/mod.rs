@@ -106,6 +106,7 @@ pub(super) fn read(source: Source, changed: &BTreeMap<String, f64>) -> Reading {
     reading.dataset = Dataset {
         source,
         syntax: super::syntax::Syntax::default(),
+        places: super::Places::default(),
         records: records.into_iter().map(Some).collect(),
     };
     find_contradictions(&mut reading);
@@ -148,6 +149,12 @@ fn find_contradictions(reading: &mut Reading) {
             continue;
         }
         let source = &dataset.source;
+        let element = d.element.as_ref();
+        let record = element.and_then(|e| dataset.places.statement(&dataset.records, e));
+        if let Some(given) = record.and_then(|record| super::argument_of(record, &d)) {
+            out.push(source.locate(d, given));
+            continue;
+        }
         let d = match d.line {
             0 => d,
             line => Diagnostic {

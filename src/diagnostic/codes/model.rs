@@ -692,6 +692,15 @@ others they are zero for ever, whatever acts between the parts. Without J they a
     FX(21,11)                            another marker of the same part: FX(21,10)",
     },
     Code {
+        name: "step_order",
+        summary: "STEP, STEP5 or HAVSIN over TIME ends at a place in degrees (a warning)",
+        explanation: "\
+Places and heights stand in turns: HAVSIN(x, x0, h0, x1, h1) goes from h0 at x0 to h1 at x1. The dialog of Adams View asks
+for them in the order begin, end, initial, final, and an angle in degrees then stands where the end is read.
+
+    HAVSIN(TIME, 0, 0.5, 30D, 120D)      write HAVSIN(TIME, 0, 30D, 0.5, 120D)",
+    },
+    Code {
         name: "model",
         summary: "something in the model stands in the way of solving it",
         explanation: "\

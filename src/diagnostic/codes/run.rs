@@ -5,6 +5,17 @@ use super::Code;
 /// Codes of runs: reasons to stop, then warnings.
 pub static RUN_CODES: &[Code] = &[
     Code {
+        name: "nothing_turns",
+        summary: "an angle is asked about an axis about which the joint of the two parts does not turn (a warning)",
+        explanation: "\
+A REVOLUTE or CYLINDRICAL joint turns about the z axes of its markers. WX, WY and WZ are components along the axes of their third
+marker, without one along those of ground; AX, AY and AZ are angles about the axes of J. Square to the joint's axis the velocity is zero for
+ever and the angle none of turning. Nothing is said where the component along that axis is asked, too.
+
+    JOINT/1, REVOLUTE, I=21, J=11        of a shaft along x of ground
+    WZ(21,11)                            write WX(21,11), or WZ(21,11,11)",
+    },
+    Code {
         name: "interrupted",
         summary: "the user stopped the run",
         explanation: "\

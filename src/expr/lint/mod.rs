@@ -171,6 +171,13 @@ mod tests {
                     "HAVSIN(-1,0,0,1,TIME)",
                 ],
             ),
+            (
+                "step_order",
+                &[
+                    "HAVSIN(TIME,0,0.5,30D,120D)",
+                    "2*STEP(TIME,0,1,30D,DX(1,2))",
+                ],
+            ),
             ("doubtful_number", &["1.0D-3", "2*5D+2", "1.D-3*DX(1,2)"]),
             ("doubtful_comment", &["5!*2", "5!", "TIME+3! +2"]),
             (
@@ -207,6 +214,8 @@ mod tests {
             "IMPACT(-DX(1,2),-VX(2,1),1,10,1,1,1)",
             "STEP(1.25,1,0,2,1)",
             "STEP(TIME,0,0,1,TIME)",
+            "STEP(TIME,0,30D,1,90D)",
+            "STEP(AZ(1,2),0,0.5,30D,1)",
             "STEP(DX(1,2),0,0,1,TIME)",
             "IMPACT(DM(2,1),VR(2,1),1,10,1,1,1)",
             "IMPACT(DX(2,1)+DX(3,1),VX(2,1),1,10,1,1,1)",

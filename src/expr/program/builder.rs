@@ -7,6 +7,7 @@
 
 use super::hashing::HashMap;
 use super::input::Input;
+use super::known::{self, Known};
 use super::node::{Node, Value};
 use super::operation::{BinaryOp, Comparison, UnaryOp, arithmetic_if};
 use super::tape::Taped;
@@ -82,26 +83,17 @@ pub struct Builder {
     pub(super) inputs: Vec<Input>,
     pub(super) tables: Vec<Arc<dyn Table>>,
     input_nodes: HashMap<Input, Value>,
-    /// open addressing: the hash of a node, and `EMPTY` or its index
-    slots: Vec<(u32, u32)>,
-    /// how often a slot was looked at: tests see that recording is linear
-    pub(super) probes: u64,
+    /// places at which nodes are found again
+    pub(super) known: Known,
     /// what was asked before, or is asked now
     pub(super) taped: Option<Box<Taped>>,
     /// how many components that share no operation may be recorded, as far as is known
     pub(super) n_components: usize,
 }
 
-const EMPTY: u32 = u32::MAX;
-
 impl Builder {
     /// Makes an empty builder.
     pub fn new(folding: Folding) -> Self {
-        Self::with_slots(folding, 64)
-    }
-
-    /// Makes an empty builder with so many slots, a power of two.
-    pub(super) fn with_slots(folding: Folding, n: usize) -> Self {
         Self {
             folding,
             nodes: Vec::new(),
@@ -109,8 +101,7 @@ impl Builder {
             inputs: Vec::new(),
             tables: Vec::new(),
             input_nodes: HashMap::default(),
-            slots: vec![(0, EMPTY); n],
-            probes: 0,
+            known: Known::default(),
             taped: None,
             n_components: 1,
         }
@@ -170,7 +161,8 @@ impl Builder {
         self.tape_input(input);
         let k = self.inputs.len() as u32;
         self.inputs.push(input);
-        let v = self.push(Node::Input(k));
+        let v = Value(self.nodes.len() as u32);
+        self.nodes.push(Node::Input(k));
         self.input_nodes.insert(input, v);
         v
     }
@@ -608,12 +600,6 @@ impl Builder {
         })
     }
 
-    fn push(&mut self, node: Node) -> Value {
-        let v = Value(self.nodes.len() as u32);
-        self.nodes.push(node);
-        v
-    }
-
     /// Returns the node, or the equal one that is there already. Arguments of a list node must be
     /// the last of the list.
     pub(super) fn intern(&mut self, node: Node) -> Value {
@@ -630,60 +616,68 @@ impl Builder {
         answer
     }
 
-    fn found_or_new(&mut self, node: Node) -> Value {
-        if (self.nodes.len() + 1) * 4 > self.slots.len() * 3 {
-            self.grow();
-        }
-        let mask = self.slots.len() - 1;
-        let hash = self.hash(&node) as u32;
-        let mut slot = hash as usize & mask;
-        loop {
-            let (known, found) = self.slots[slot];
-            self.probes += 1;
-            if found == EMPTY {
-                let v = self.push(node);
-                self.slots[slot] = (hash, v.0);
-                return v;
+    /// Returns the node that equals this one, or records it; arguments of a node that is known are
+    /// taken from the end of the list.
+    pub(super) fn found_or_new(&mut self, node: Node) -> Value {
+        let newest = self.newest_operand(&node);
+        let (nodes, arguments) = (&self.nodes, &self.arguments);
+        let is_equal = |found: usize| known::equal(arguments, &nodes[found], &node);
+        let new = nodes.len() as u32;
+        let among_users = newest.map(|k| (k, self.known.user(k, is_equal)));
+        let found = match among_users {
+            Some((_, (Some(found), _))) => Ok(found),
+            Some((newest, (None, true))) => {
+                self.known.add_user(newest, new);
+                Err(())
             }
-            if known == hash && self.equal(&self.nodes[found as usize], &node) {
+            Some((_, (None, false))) | None => {
+                let hash = known::hash(&self.arguments, &node) as u32;
+                let slot = self.known.slot(hash, is_equal);
+                slot.map_err(|slot| self.known.fill(slot, hash, new))
+            }
+        };
+        match found {
+            Ok(found) => {
                 if let Some(range) = node.list() {
                     self.arguments.truncate(range.start);
                 }
-                return Value(found);
+                Value(found)
             }
-            slot = (slot + 1) & mask;
+            Err(()) => {
+                self.nodes.push(node);
+                Value(new)
+            }
         }
     }
 
-    /// Finds a slot for each node, after a tape has told where they are.
+    /// Finds a place for each node, after a tape has told where they are.
     pub(super) fn find_again(&mut self) {
-        let n = self.nodes.len() + 1;
-        self.slots = vec![(0, EMPTY); (n * 2).next_power_of_two().max(64)];
-        let mask = self.slots.len() - 1;
+        let mut again = Known::default();
         for (k, node) in self.nodes.iter().enumerate() {
             if matches!(node, Node::Input(_)) {
                 continue;
             }
-            let hash = self.hash(node) as u32;
-            let mut slot = hash as usize & mask;
-            while self.slots[slot].1 != EMPTY {
-                slot = (slot + 1) & mask;
+            let among_users = |newest: &usize| again.user(*newest, |_| false).1;
+            match self.newest_operand(node).filter(among_users) {
+                Some(newest) => again.add_user(newest, k as u32),
+                None => {
+                    let hash = known::hash(&self.arguments, node) as u32;
+                    if let Err(slot) = again.slot(hash, |_| false) {
+                        again.fill(slot, hash, k as u32);
+                    }
+                }
             }
-            self.slots[slot] = (hash, k as u32);
         }
+        again.probes = self.known.probes;
+        self.known = again;
     }
 
-    fn grow(&mut self) {
-        let mut slots = vec![(0, EMPTY); self.slots.len() * 2];
-        let mask = slots.len() - 1;
-        for &(hash, k) in self.slots.iter().filter(|slot| slot.1 != EMPTY) {
-            let mut slot = hash as usize & mask;
-            while slots[slot].1 != EMPTY {
-                slot = (slot + 1) & mask;
-            }
-            slots[slot] = (hash, k);
-        }
-        self.slots = slots;
+    /// Returns the index of the operand of a node that was recorded last.
+    #[inline]
+    fn newest_operand(&self, node: &Node) -> Option<usize> {
+        let mut newest = None;
+        self.operands(node, |v| newest = newest.max(Some(v.index())));
+        newest
     }
 
     /// Calls `f` with every operand of a node, in order.
@@ -712,56 +706,6 @@ impl Builder {
                 }
             }
         }
-    }
-
-    fn equal(&self, a: &Node, b: &Node) -> bool {
-        match (a, b) {
-            (Node::If(_), Node::If(_)) => self.same_lists(a, b),
-            (Node::Call { function: f, .. }, Node::Call { function: g, .. }) => {
-                f == g && self.same_lists(a, b)
-            }
-            _ => a == b,
-        }
-    }
-
-    fn same_lists(&self, a: &Node, b: &Node) -> bool {
-        match (a.list(), b.list()) {
-            (Some(a), Some(b)) => self.arguments[a] == self.arguments[b],
-            _ => false,
-        }
-    }
-
-    fn hash(&self, node: &Node) -> u64 {
-        // all bits of a product reach all bits of the hash: numbers such as 2.5 have zeros in all
-        // low bits
-        let mix = |h: u64, word: u64| {
-            let product =
-                u128::from(h ^ word ^ 0x9E37_79B9_7F4A_7C15) * u128::from(0xD6E8_FEB8_6659_FD93u64);
-            (product >> 64) as u64 ^ product as u64
-        };
-        let pair = |a: Value, b: Value| u64::from(a.0) << 32 | u64::from(b.0);
-        match *node {
-            Node::Constant(bits) => mix(1, bits),
-            Node::Input(k) => mix(2, u64::from(k)),
-            Node::Unary(op, x) => mix(mix(3, op as u64), u64::from(x.0)),
-            Node::Whole(x, n) => mix(mix(4, u64::from(x.0)), n as u64),
-            Node::Binary(op, a, b) => mix(mix(5, op as u64), pair(a, b)),
-            Node::Compare(op, a, b) => mix(mix(6, op as u64), pair(a, b)),
-            Node::Select(c, yes, no) => mix(mix(7, u64::from(c.0)), pair(yes, no)),
-            Node::Lookup { table, order, x } => mix(
-                mix(8, u64::from(table) << 8 | u64::from(order)),
-                u64::from(x.0),
-            ),
-            Node::Partial { call, k } => mix(mix(11, u64::from(call.0)), u64::from(k)),
-            Node::If(_) => self.hash_list(9, node, mix),
-            Node::Call { function, .. } => self.hash_list(mix(10, function as u64), node, mix),
-        }
-    }
-
-    fn hash_list(&self, seed: u64, node: &Node, mix: impl Fn(u64, u64) -> u64) -> u64 {
-        self.arguments[node.list().unwrap_or(0..0)]
-            .iter()
-            .fold(seed, |h, v| mix(h, u64::from(v.0)))
     }
 }
 

@@ -395,7 +395,7 @@ mod tests {
             let [c, d] = numbers.map(|number| b.constant(number));
             let terms = [(x, c), (y, d)].map(|(x, c)| b.binary(BinaryOp::Mul, x, c));
             b.binary(BinaryOp::Add, terms[0], terms[1]);
-            assert_eq!(followed(&b), b.probes == 0);
+            assert_eq!(followed(&b), b.known.probes == 0);
             followed(&b)
         };
         assert!(!followed([0.3, 0.7]));

@@ -35,6 +35,7 @@ mod gradient;
 mod guard;
 mod hashing;
 mod input;
+mod known;
 mod machine;
 mod node;
 mod operation;

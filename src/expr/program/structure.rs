@@ -18,8 +18,6 @@ use super::tape::{Shelf, Taped};
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Slots of a builder that records equations, at the beginning.
-const SLOTS_OF_EQUATIONS: usize = 2048;
 /// Structures whose operands are numbered alike, at most: what differs more is made anew.
 const MOST_ALIKE: usize = 64;
 /// Generations that a structure is kept without being asked for.
@@ -109,7 +107,7 @@ impl Builder {
     /// Makes an empty builder that follows the tape of the one before at its place, where this
     /// thread looks for structures.
     pub(crate) fn again_or_new(folding: Folding) -> Self {
-        let mut builder = Self::with_slots(folding, SLOTS_OF_EQUATIONS);
+        let mut builder = Self::new(folding);
         builder.taped = tape().map(Box::new);
         builder
     }

@@ -25,6 +25,7 @@ pub(crate) mod references;
 mod signs;
 mod superseded;
 mod systems;
+mod turning;
 
 use super::*;
 use crate::arrange::Arrange;
@@ -148,6 +149,10 @@ pub const DOUBTS: &[Rule] = &[
     (
         "joints have no old friction",
         superseded::joints_have_no_old_friction,
+    ),
+    (
+        "angles are asked where joints turn",
+        turning::angles_are_asked_where_joints_turn,
     ),
     ("joints stand once", constraints_twice::joints_stand_once),
     ("units are given", magnitudes::units_are_given),

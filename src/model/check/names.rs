@@ -8,8 +8,11 @@ use std::collections::HashMap;
 type Named<'a> = (ElementKind, Option<ElementId>, &'a str);
 
 pub(super) fn names_are_used_once(model: &Model, out: &mut Out) {
-    let labels = model.labels();
-    for (first, second) in names_twice(model) {
+    let twice = names_twice(model);
+    // most models have none
+    let labels = (!twice.is_empty()).then(|| model.labels());
+    let labels = labels.unwrap_or_default();
+    for (first, second) in twice {
         let Some([first_of, second_of]) = pair(model, first, second) else {
             continue;
         };

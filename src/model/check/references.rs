@@ -9,7 +9,28 @@ use crate::expr::signature;
 use crate::model::{ElementId, ElementKind, Formula, Model};
 use std::collections::BTreeMap;
 
+/// Numbers that do not exist for which near ones are sought, at most: each is compared with all
+/// that do.
+const MOST_ADVISED: usize = 100;
+
+/// Advice on elements that do not exist.
+#[derive(Default)]
+struct Advice(BTreeMap<ElementId, Option<String>>);
+
+impl Advice {
+    /// Returns which numbers near that of an element exist; nothing once that has been asked of
+    /// more elements than anybody reads of.
+    fn on(&mut self, model: &Model, target: ElementId) -> Option<String> {
+        if self.0.len() >= MOST_ADVISED && !self.0.contains_key(&target) {
+            return None;
+        }
+        let near = || near(target.number, &model.numbers(target.kind));
+        self.0.entry(target).or_insert_with(near).clone()
+    }
+}
+
 pub(super) fn references_exist(model: &Model, out: &mut Out) {
+    let mut advice = Advice::default();
     for r in model.each_reference() {
         if model.has(r.target) {
             continue;
@@ -23,14 +44,14 @@ pub(super) fn references_exist(model: &Model, out: &mut Out) {
             message,
         );
         at_argument(out, r.argument);
-        if let Some(advice) = near(number, &model.numbers(r.target.kind)) {
-            advise(out, advice);
+        if let Some(near) = advice.on(model, r.target) {
+            advise(out, near);
         }
     }
 }
 
 pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
-    let mut known = Known::default();
+    let (mut known, mut advice) = (Known::default(), Advice::default());
     for owned in model.formulas() {
         let Formula::Expression { text, .. } = owned.formula else {
             continue;
@@ -76,8 +97,7 @@ pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
                     }
                     let message = format!("{target} does not exist");
                     let mut d = who(Diagnostic::error(Cause::UnknownElement, message));
-                    d.help
-                        .extend(near(target.number, &model.numbers(target.kind)));
+                    d.help.extend(advice.on(model, target));
                     out.push(placed(d, owned.formula, at));
                 }
             }
