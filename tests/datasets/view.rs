@@ -469,3 +469,88 @@ fn mistakes_in_functions_stand_where_they_were_typed() {
     let d = errors(&reading)[0];
     assert_eq!((d.code, d.line, d.column), ("unknown_name", 5, 6), "{d}");
 }
+
+#[test]
+fn names_with_blanks_stand_in_quotation_marks() {
+    let text = format!(
+        "{HEAD}part create rigid_body name_and_position part_name = .m.\"front axle\" location = 1,2,3\n\
+         marker create marker_name = .m.\"front axle\".\"left hub\" location = (LOC_RELATIVE_TO({{0,0,0}}, .m.\"front axle\"))\n\
+         measure create function measure_name = .m.v function = \"DX(.m.\\\"front axle\\\".\\\"left hub\\\")\"\n"
+    );
+    let model = sound(&text);
+    let names: Vec<_> = model
+        .parts
+        .values()
+        .filter_map(|p| p.place.name.clone())
+        .collect();
+    assert_eq!(names, ["ground", "front axle"]);
+    assert_eq!(text_of(&model.variables[&1].function), "DX(1)");
+}
+
+#[test]
+fn places_are_in_the_coordinates_of_the_file() {
+    let at = |kind: &str, location: &str| {
+        let text = format!(
+            "{HEAD}defaults units coordinate_system_type = {kind}\n\
+             part create rigid_body name_and_position part_name = .m.p location = {location}\n"
+        );
+        sound(&text).parts[&2].qg
+    };
+    let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
+    assert!(near(at("cylindrical", "2, 90, 5"), [0.0, 2.0, 5.0]));
+    assert!(near(at("spherical", "2, 90, 90"), [0.0, 2.0, 0.0]));
+    assert!(near(at("cylindrical", "({1, 2, 3})"), [1.0, 2.0, 3.0]));
+}
+
+#[test]
+fn a_marker_that_is_named_and_not_there_is_told() {
+    let text = format!(
+        "{HEAD}part create rigid_body name_and_position part_name = .m.p location = 0,0,0\n\
+         part create rigid_body mass_properties part_name = .m.p mass = 1 center_of_mass_marker = .m.p.cm\n"
+    );
+    let reading = read(&text);
+    let d = errors(&reading)[0];
+    assert_eq!((d.code, d.line), ("view_expression", 4), "{d}");
+    let own = read(&format!(
+        "{HEAD}variable create variable_name = .m.x real_value = (.m.x + 1)\n\
+        marker create marker_name = .m.ground.q location = (.m.x), 0, 0\n"
+    ));
+    assert!(!errors(&own).is_empty());
+}
+
+/// Markers in ground coordinates, on parts that stand elsewhere, without a word that they are.
+#[test]
+fn markers_that_would_meet_in_ground_are_doubted() {
+    let text = |default: &str| {
+        format!(
+            "{HEAD}{default}part create rigid_body name_and_position part_name = .m.p location = 50,0,0\n\
+             marker create marker_name = .m.p.q location = 100,0,0\n\
+             marker create marker_name = .m.ground.r location = 100,0,0\n\
+             constraint create joint revolute joint_name = .m.j i_marker_name = .m.p.q j_marker_name = .m.ground.r\n"
+        )
+    };
+    let doubted = |text: &str| {
+        read(text)
+            .diagnostics
+            .iter()
+            .any(|d| d.code == "view_frames")
+    };
+    assert!(doubted(&text("")));
+    assert!(!doubted(&text(
+        "defaults coordinate_system default_coordinate_system = .m.ground\n"
+    )));
+}
+
+#[test]
+fn an_angle_between_three_markers_is_a_variable() {
+    let points = ["a", "b", "c"]
+        .map(|name| format!("marker create marker_name = .m.ground.{name} location = 0,0,0\n"));
+    let text = format!(
+        "{HEAD}{}measure create angle measure_name = .m.bend first = .m.ground.a middle = .m.ground.b last = .m.ground.c\n",
+        points.concat()
+    );
+    assert_eq!(
+        text_of(&sound(&text).variables[&1].function),
+        "RTOD*INCANG(1,2,3)"
+    );
+}

@@ -73,6 +73,15 @@ though the file has degrees. Matrices of a FIELD are taken as they stand.
     part modify rigid_body initial_velocity part_name = .m.rotor wz = 72.0      degrees per second",
     },
     Code {
+        name: "view_frames",
+        summary: "markers that meet in another frame than that in which they are read",
+        explanation: "\
+Locations without `relative_to` are in the default coordinate system, and where none is set in the part that holds the marker. The
+markers of joints do not meet so; they would if their numbers were in ground.
+
+    defaults coordinate_system default_coordinate_system = .m.ground      above the markers",
+    },
+    Code {
         name: "view_no_model",
         summary: "a command file of Adams View that makes no model",
         explanation: "\

@@ -8,6 +8,7 @@ use crate::dataset::view::term::Term;
 use crate::dataset::view::{PART, POINT_MASS};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::space::Mat3;
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 /// Share of the size of a part by which a centre that is computed may differ from the one that the
@@ -141,6 +142,7 @@ impl Maker<'_> {
         for k in parts.collect::<Vec<_>>() {
             self.make_part(k);
         }
+        self.tell_of_masses();
         self.note_sides();
         let markers = self
             .db
@@ -317,13 +319,7 @@ impl Maker<'_> {
                 Ok(None) => "it has neither a mass nor shapes".into(),
                 Ok(Some(_)) => "the density of its material is not known".into(),
             };
-            let name = self.db.inner_name(k);
-            let d = Diagnostic::warning(
-                "view_mass",
-                format!("the mass of {name} is not known: {why}"),
-            );
-            let d = d.help("give it with `part modify rigid_body mass_properties`: mass, ixx, iyy, izz, center_of_mass_marker");
-            self.say(k, "material_type", d);
+            self.massless.push((k, why));
             self.element(draft, "center_of_mass_marker", "CM");
             return;
         };
@@ -360,6 +356,30 @@ impl Maker<'_> {
             }
         };
         draft.give("IP", Want::Numbers(ip), span);
+    }
+
+    /// Says once for each reason which masses are not known.
+    fn tell_of_masses(&mut self) {
+        const SHOWN: usize = 3;
+        let mut of_reason: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+        for (k, why) in std::mem::take(&mut self.massless) {
+            of_reason.entry(why).or_default().push(k);
+        }
+        for (why, parts) in of_reason {
+            let names = parts.iter().map(|k| self.db.inner_name(*k));
+            let mut names: Vec<String> = names.take(SHOWN).collect();
+            if parts.len() > SHOWN {
+                names.push(format!("{} more", parts.len() - SHOWN));
+            }
+            let what = match &names[..] {
+                [one] => format!("the mass of {one} is not known: {why}"),
+                _ => format!("the masses of {} are not known: {why}", names.join(", ")),
+            };
+            let d = Diagnostic::warning("view_mass", what).help(
+                "give them with `part modify rigid_body mass_properties`: mass, ixx, iyy, izz, center_of_mass_marker",
+            );
+            self.say(parts[0], "material_type", d);
+        }
     }
 
     /// Says once which cylinders of many sides are taken as round.

@@ -1,7 +1,9 @@
 //! Joints, primitives, motions, couplers, gears, curves.
 
 use super::{Draft, Maker, Want};
+use crate::dataset::view::database::Reference;
 use crate::diagnostic::{Cause, Diagnostic};
+use crate::space::Vec3;
 
 impl Maker<'_> {
     pub(super) fn make_constraints(&mut self) {
@@ -85,6 +87,64 @@ impl Maker<'_> {
             let d = Diagnostic::error("missing_argument", format!("{name} has no {argument}"));
             self.say(k, argument, d);
         }
+    }
+
+    /// Doubts markers that are read in their parts where joints would meet if they were read in
+    /// ground.
+    pub(super) fn doubt_frames(&self) {
+        /// Share of the size of the mechanism within which two markers are one place.
+        const MEETS: f64 = 1e-6;
+        let mut gaps = [0.0_f64; 2];
+        let mut size = 0.0_f64;
+        let mut worst = None;
+        for k in self.db.of_kind("constraint joint") {
+            let word = self.db.objects[k]
+                .kind
+                .rsplit(' ')
+                .next()
+                .unwrap_or_default();
+            if matches!(
+                word,
+                "translational" | "cylindrical" | "planar" | "rackpin" | "screw"
+            ) {
+                continue;
+            }
+            let side = |name: &str| {
+                let marker = self.db.reference_of(k, name)?;
+                let now = self.db.pose(marker).ok()?.position;
+                Some((now, self.as_if_in_ground(marker).unwrap_or(now)))
+            };
+            let (Some(i), Some(j)) = (side("i_marker_name"), side("j_marker_name")) else {
+                continue;
+            };
+            let (now, in_ground) = ((i.0 - j.0).norm(), (i.1 - j.1).norm());
+            size = size.max(i.1.norm()).max(j.1.norm());
+            if now > gaps[0] {
+                worst = Some(k);
+            }
+            gaps = [gaps[0].max(now), gaps[1].max(in_ground)];
+        }
+        let Some(k) = worst.filter(|_| gaps[0] > MEETS * size && gaps[1] <= MEETS * size) else {
+            return;
+        };
+        let what = format!(
+            "its markers are {:.3e} apart where each is read in its part; read in ground, those of all such joints meet",
+            gaps[0]
+        );
+        let model = self.db.model.clone().unwrap_or_default();
+        let help = format!(
+            "`defaults coordinate_system default_coordinate_system = {model}.ground` above the markers says that they are in ground"
+        );
+        self.say(k, "", Diagnostic::warning("view_frames", what).help(help));
+    }
+
+    /// Returns where a marker would stand if the numbers of its location were in ground; `None`
+    /// where a frame was said.
+    fn as_if_in_ground(&self, marker: usize) -> Option<Vec3<f64>> {
+        let location = self.db.given(marker, "location")?;
+        let is_said = *self.db.frame_of(location) != Reference::Own;
+        let numbers = self.db.numbers(marker, "location").filter(|_| !is_said)?;
+        <[f64; 3]>::try_from(numbers).ok().map(Vec3)
     }
 
     fn joint(&self, draft: &mut Draft, k: usize, word: &str) {

@@ -115,6 +115,8 @@ pub(super) struct Maker<'a> {
     free_from: BTreeMap<ElementKind, u32>,
     pub records: Vec<Record>,
     has_told_rates: bool,
+    /// parts without a known mass, and why
+    massless: Vec<(usize, String)>,
 }
 
 /// A value on its way into a record.
@@ -219,6 +221,7 @@ impl<'a> Maker<'a> {
             free_from: BTreeMap::new(),
             records: Vec::new(),
             has_told_rates: false,
+            massless: Vec::new(),
         }
     }
 
@@ -231,6 +234,7 @@ impl<'a> Maker<'a> {
         self.make_settings();
         self.make_bodies();
         self.make_constraints();
+        self.doubt_frames();
         self.make_forces();
         self.make_data();
         self.make_outputs();
