@@ -239,6 +239,19 @@ impl<'a> Maker<'a> {
         self.make_data();
         self.make_outputs();
         self.make_measures();
+        self.tell_of_variables();
+    }
+
+    /// Says of design variables that have no value why, whether or not anything reads them.
+    fn tell_of_variables(&self) {
+        for k in self.db.of_kind(crate::dataset::view::VARIABLE) {
+            let object = &self.db.objects[k];
+            let fields = ["real_value", "integer_value"];
+            let given = fields.iter().find_map(|field| object.attributes.get(field));
+            if let (Some(attribute), Err(trouble)) = (given, self.db.variable(k)) {
+                self.db.trouble(Some(k), attribute.span, &trouble);
+            }
+        }
     }
 
     /// Leaves out what stands on parts that are not part of the model.
