@@ -5,7 +5,10 @@
 //! streams. Results go to standard output, everything about them (mistakes, warnings, progress) to
 //! standard error.
 
-#![cfg_attr(not(feature = "native"), forbid(unsafe_code))]
+#![cfg_attr(
+    not(any(feature = "native", feature = "routines")),
+    forbid(unsafe_code)
+)]
 
 mod anatomy;
 mod animate;
@@ -38,6 +41,7 @@ mod linear;
 mod loads;
 mod mdi;
 mod memory;
+mod mistake;
 mod modes;
 mod motion;
 mod moved;
@@ -50,6 +54,8 @@ mod render;
 mod repl;
 mod report;
 mod response;
+#[cfg(all(unix, feature = "routines"))]
+mod routines;
 mod run;
 mod runs;
 mod setup;

@@ -3,6 +3,7 @@
 use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, whole_from_one};
 use super::doubted;
 use super::limit::{Guard, simulations_to_the_end};
+use super::mistake::Mistake;
 use super::progress::Progress;
 use super::render::Sources;
 use super::setup::{self, Asked, Prepared, Setup};
@@ -71,6 +72,9 @@ pub struct Args {
     repeat: usize,
     #[command(flatten)]
     unsolved: UnsolvedArgs,
+    #[cfg(all(unix, feature = "routines"))]
+    #[command(flatten)]
+    routines: super::routines::RoutineArgs,
     #[command(flatten)]
     limits: LimitArgs,
     /// Threads for mechanisms that nothing couples, which change no result [default: as many as
@@ -109,11 +113,13 @@ struct Terminal<'a> {
     guard: &'a Guard,
     /// simulations that are still to begin, where nothing comes after the last of them
     left: &'a std::cell::Cell<Option<usize>>,
+    /// what a routine has done wrong
+    mistake: &'a Mistake,
 }
 
 impl Watch for Terminal<'_> {
     fn interrupted(&mut self) -> bool {
-        interrupt::requested() || self.tables.have_failed()
+        interrupt::requested() || self.tables.have_failed() || self.mistake.is_there()
     }
     fn progress(&mut self, t: f64, _h: f64, stats: &Stats) {
         interrupt::results_begin();
@@ -172,6 +178,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     check_columns(args, &model, &steps)?;
     let name = args.name.as_ref().unwrap_or(&job.base);
     let mut session = open(args, (model, is_as_read), name);
+    let mistake = routines(args, &mut session, &dataset)?;
     let seconds = &mut session.run.record.seconds;
     seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;
@@ -182,7 +189,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     guard.follow(&session, &tables);
 
     // solve
-    let outcome = solve(args, &mut session, &steps, (&tables, &guard));
+    let outcome = solve(args, &mut session, &steps, (&tables, &guard, &mistake));
     let (status, failure) = told(&mut session, outcome);
     let elapsed = clock.elapsed().as_secs_f64();
     let cpu = clock.seconds();
@@ -447,7 +454,7 @@ fn solve(
     args: &Args,
     session: &mut Session,
     steps: &[Step],
-    (tables, guard): (&output::Tables, &Guard),
+    (tables, guard, mistake): (&output::Tables, &Guard, &Mistake),
 ) -> Result<Status, Error> {
     let progress = std::cell::RefCell::new(Progress::new(true, 0.0, 1.0));
     // bars of error come after the rows
@@ -463,10 +470,24 @@ fn solve(
         tables: tables.clone(),
         guard,
         left: &left,
+        mistake,
     };
     let outcome = obey(session, steps, begin, &mut terminal);
     progress.borrow().done();
-    outcome
+    match mistake.take() {
+        Some(mistake) => Err(mistake.into()),
+        None => outcome,
+    }
+}
+
+/// Has the routines of libraries compute what USER stands for, where the command line gives any.
+fn routines(args: &Args, session: &mut Session, dataset: &Dataset) -> Result<Mistake, Failure> {
+    #[cfg(all(unix, feature = "routines"))]
+    return args
+        .routines
+        .compute(session, dataset, args.unsolved.zero_user);
+    #[cfg(not(all(unix, feature = "routines")))]
+    Ok(Mistake::default())
 }
 
 /// The model and the commands of a run.

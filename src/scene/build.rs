@@ -41,7 +41,7 @@ pub struct Options {
     pub skip: BTreeSet<ElementKind>,
     /// closures for `USER(…)`
     pub hooks: Vec<HookName>,
-    /// what `USER(…)` would compute is zero
+    /// what `USER(…)` would compute is zero where no closure computes it
     pub zero_user: bool,
     /// VARIABLEs to which numbers from outside are added: inputs of a linear system
     pub plant_inputs: Vec<u32>,
@@ -74,6 +74,7 @@ impl Scene {
             unusable,
             hooks: &options.hooks,
             zero_user: options.zero_user,
+            without_routine: Vec::new(),
             shells: &options.shells,
             structures: Structures::default(),
         };
@@ -114,6 +115,7 @@ impl Scene {
             let f = b.compiled(&mut c, &Asker::Column(name.as_str().into()), text);
             b.scene.extra.push(f);
         }
+        b.name_those_without_routine(&mut c);
         b.counted();
         b.read_zero();
         if c.errors.is_empty() {
@@ -187,6 +189,8 @@ pub(super) struct Builder<'m> {
     pub(super) unusable: Vec<Diagnostic>,
     pub(super) hooks: &'m [HookName],
     pub(super) zero_user: bool,
+    /// what asks for routines that nobody has
+    pub(super) without_routine: Vec<Asker>,
     pub(super) shells: &'m BTreeMap<u32, Result<Shell, String>>,
     /// expressions that differ in their numbers and in what they ask for share their code
     pub(super) structures: Structures,
