@@ -176,7 +176,7 @@ pub fn register(inner: &mut Inner, element: ElementId, routine: Routine) -> Resu
     let first = within(Asked::first(), || {
         routine.call(id, 0.0, constants, true, &mut nothing)
     });
-    let known = first.questions;
+    let known = Arc::new(first.found);
     let inputs = known.inputs.clone();
     let names: Vec<&str> = inputs.iter().map(String::as_str).collect();
     let failure = inner.failure.clone();

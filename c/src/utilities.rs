@@ -4,7 +4,7 @@
 //! computed, and what it asks for then becomes the inputs of its element. Later it is told their
 //! values. It must ask for all it reads in that first call, as Adams wants it to.
 
-use engine::internals::system::asked::{MOST_VALUES, ask, ask_array};
+use engine::internals::system::asked::{ask, ask_array};
 use std::ffi::{CStr, c_char, c_int};
 
 /// Reads a function of the model (DX, VM, VARVAL …) from within a routine, as SYSFNC of Adams.
@@ -49,18 +49,18 @@ pub unsafe extern "C" fn cognate_sysary(
     let name = (!name.is_null()).then(|| unsafe { CStr::from_ptr(name) });
     // SAFETY: NULL or `n` numbers; NULL or places
     let (ids, n_values, failed) = unsafe { (numbers(ids, n), n_values.as_mut(), failed.as_mut()) };
-    let mut states = [0.0; MOST_VALUES];
-    let found = name.and_then(|name| ask_array(name.to_str().ok()?.trim(), ids, &mut states));
-    let count = found.unwrap_or(0);
+    let found = name.and_then(|name| ask_array(name.to_str().ok()?.trim(), ids));
+    let is_lacking = found.is_none();
+    let found = found.unwrap_or_default();
     if !values.is_null() {
         // SAFETY: there are as many places as the name has values
-        unsafe { std::slice::from_raw_parts_mut(values, count) }.copy_from_slice(&states[..count]);
+        unsafe { std::slice::from_raw_parts_mut(values, found.len()) }.copy_from_slice(&found);
     }
     if let Some(n_values) = n_values {
-        *n_values = count as c_int;
+        *n_values = found.len() as c_int;
     }
     if let Some(failed) = failed {
-        *failed = c_int::from(found.is_none());
+        *failed = c_int::from(is_lacking);
     }
 }
 

@@ -74,7 +74,6 @@ impl Scene {
             unusable,
             hooks: &options.hooks,
             zero_user: options.zero_user,
-            without_routine: Vec::new(),
             shells: &options.shells,
             structures: Structures::default(),
         };
@@ -115,7 +114,6 @@ impl Scene {
             let f = b.compiled(&mut c, &Asker::Column(name.as_str().into()), text);
             b.scene.extra.push(f);
         }
-        b.name_those_without_routine(&mut c);
         b.counted();
         b.read_zero();
         if c.errors.is_empty() {
@@ -189,8 +187,6 @@ pub(super) struct Builder<'m> {
     pub(super) unusable: Vec<Diagnostic>,
     pub(super) hooks: &'m [HookName],
     pub(super) zero_user: bool,
-    /// what asks for routines that nobody has
-    pub(super) without_routine: Vec<Asker>,
     pub(super) shells: &'m BTreeMap<u32, Result<Shell, String>>,
     /// expressions that differ in their numbers and in what they ask for share their code
     pub(super) structures: Structures,

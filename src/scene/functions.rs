@@ -122,11 +122,6 @@ impl Builder<'_> {
             if self.zero_user {
                 return vec![self.compiled(c, owner, &"0".into()); n];
             }
-            self.without_routine.push(owner.clone());
-            if self.without_routine.len() > 1 {
-                // the first names them all
-                return vec![usize::MAX; n];
-            }
             let message = "USER needs a routine that is not part of the dataset";
             c.errors.push(Diagnostic::error(Cause::UserRoutine, message).element(owner).help(
                 "load the library that has it (--routines), register a closure for it in a program, switch the element off, or take what USER would compute as zero (--zero-user)",
@@ -153,18 +148,6 @@ impl Builder<'_> {
         let text = format!("USER, {}", self.hooks[closure].name);
         let outside = |place| self.supplied_formula(owner, &text, place);
         places.into_iter().map(outside).collect()
-    }
-
-    /// Names all that ask for routines which nobody has, in the one complaint about them.
-    pub(super) fn name_those_without_routine(&self, c: &mut Compiler) {
-        let Some((_, others)) = self.without_routine.split_first() else {
-            return;
-        };
-        let is_it = |d: &&mut Diagnostic| d.is(Cause::UserRoutine);
-        if let (Some(d), false) = (c.errors.iter_mut().find(is_it), others.is_empty()) {
-            let names: Vec<String> = others.iter().map(ToString::to_string).collect();
-            d.message = format!("{}; so do {}", d.message, names.join(", "));
-        }
     }
 
     /// A number from outside as a formula.

@@ -57,6 +57,8 @@ fn run(folder: &Path, name: &str, args: &[&str]) -> Vec<(String, Vec<f64>)> {
         "--quiet",
         "--end",
         "5",
+        "--steps",
+        "200",
         "--out",
         path(folder),
         "--name",
@@ -201,7 +203,7 @@ fn what_a_routine_does_wrong_ends_the_run_with_its_name() {
     for (entry, said) in [
         (
             "late",
-            "its routine has asked for AZ(21,1), but not in its first call",
+            "its routine has asked for AZ(21, 1), but not in its first call",
         ),
         ("stops", "its routine says: half a second is enough"),
         ("nofun", "its routine says: there is no such function"),

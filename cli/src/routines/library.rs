@@ -103,7 +103,7 @@ impl Loaded {
     /// Loads a library, which runs its code.
     ///
     /// # Errors
-    /// What the loader of the system says.
+    /// The words of the loader of the system.
     pub fn open(path: &Path) -> Result<Self, String> {
         super::services::keep();
         // SAFETY: the user has named this library so that its code runs. All of its symbols are
@@ -166,7 +166,7 @@ impl Loaded {
     }
 }
 
-/// What a structure of C tells of an element beside its number and the numbers of USER.
+/// Facts of an element that a structure of C tells, beside its number and the numbers of USER.
 #[derive(Clone, Debug)]
 pub enum Structure {
     /// SFORCE: I, J, whether it has no reaction, its type

@@ -13,7 +13,7 @@ use super::mistake::Mistake;
 use super::{Failure, remark};
 use cognate::analysis::session::Session;
 use cognate::dataset::Dataset;
-use cognate::diagnostic::{Cause, Diagnostic, counted};
+use cognate::diagnostic::{Cause, Diagnostic, Severity, counted};
 use cognate::disk;
 use cognate::internals::system::asked::Asked;
 use cognate::internals::system::closures::{Call, Hook};
@@ -111,13 +111,22 @@ impl RoutineArgs {
         if !wrong.is_empty() {
             return Err(Failure::in_model(dataset, wrong));
         }
-        let hooks = found.into_iter().map(|(wanted, routine)| {
+        let mut hooks = Vec::with_capacity(found.len());
+        let mut wrong = Vec::new();
+        for (wanted, routine) in found {
             let asker = asker(&session.model, wanted.element);
-            hook(&wanted, asker, routine, &mistake)
-        });
-        for hook in hooks.collect::<Vec<_>>() {
-            session.register_hook(hook);
+            let hook = hook(&wanted, asker, routine, &mistake);
+            if session.model.is_active(wanted.element) {
+                wrong.extend(wrong_questions(&session.model, wanted.element, &hook));
+            }
+            hooks.push(hook);
         }
+        if !wrong.is_empty() {
+            return Err(Failure::in_model(dataset, wrong));
+        }
+        hooks
+            .into_iter()
+            .for_each(|hook| session.register_hook(hook));
         let names = self.libraries.iter().map(|path| disk::text(path));
         let event = |name| Event::Info(format!("routines: {name}"));
         session.run.log.extend(names.map(event));
@@ -280,6 +289,18 @@ fn listed(all: &[ElementId]) -> String {
     format!(": {many} ask for it, {}", names.join(", "))
 }
 
+/// Returns what is wrong with the questions of a routine: they name what the model does not have.
+fn wrong_questions(model: &Model, element: ElementId, hook: &Hook) -> Vec<Diagnostic> {
+    let wrong = |input: &String| {
+        let what = |d: Diagnostic| format!("its routine asks for {input}: {}", d.message);
+        let all = model.check_expression(input).into_iter();
+        let all = all.filter(|d| d.severity == Severity::Error);
+        all.map(|d| Diagnostic::error(Cause::UserRoutine, what(d)).element(element))
+            .collect::<Vec<_>>()
+    };
+    hook.inputs.iter().flat_map(wrong).collect()
+}
+
 /// Returns the closure that calls a routine, after the first call that finds out what it reads.
 fn hook(wanted: &Wanted<'_>, asker: Asker, routine: Routine, mistake: &Mistake) -> Hook {
     let element = wanted.element;
@@ -298,7 +319,7 @@ fn hook(wanted: &Wanted<'_>, asker: Asker, routine: Routine, mistake: &Mistake) 
         &mut nothing,
     );
     told.hear(&first);
-    let questions = first.questions;
+    let questions = Arc::new(first.found);
     let n = questions.inputs.len();
     Hook {
         name: element.to_string(),
@@ -321,7 +342,7 @@ fn hook(wanted: &Wanted<'_>, asker: Asker, routine: Routine, mistake: &Mistake) 
     }
 }
 
-/// What a routine says and does wrong.
+/// Messages and mistakes of a routine.
 struct Told {
     element: ElementId,
     mistake: Mistake,

@@ -4,7 +4,7 @@
 //! A library of routines is linked without them, and finds them in the program that loads it:
 //! `build.rs` has the linker export these names and no others.
 
-use cognate::internals::system::asked::{self, MOST_VALUES};
+use cognate::internals::system::asked;
 use std::ffi::{c_char, c_int};
 use std::os::raw::c_ulong;
 
@@ -96,16 +96,16 @@ unsafe fn answer_array(
     (values, n_values): (*mut f64, *mut c_int),
     failed: *mut c_int,
 ) {
-    let mut found = [0.0; MOST_VALUES];
-    let n = asked::ask_array(name, ids, &mut found);
-    let count = n.unwrap_or(0);
+    let answer = asked::ask_array(name, ids);
+    let failure = c_int::from(answer.is_none());
+    let found = answer.unwrap_or_default();
     // SAFETY: the caller says so
     unsafe {
         if !values.is_null() {
-            std::slice::from_raw_parts_mut(values, count).copy_from_slice(&found[..count]);
+            std::slice::from_raw_parts_mut(values, found.len()).copy_from_slice(&found);
         }
-        put(n_values, count as c_int);
-        put(failed, c_int::from(n.is_none()));
+        put(n_values, found.len() as c_int);
+        put(failed, failure);
     }
 }
 

@@ -22,7 +22,7 @@ struct Question {
     input: usize,
 }
 
-/// What a routine has asked for in its first call.
+/// Questions of a routine in its first call, and the inputs that answer them.
 #[derive(Clone, Debug, Default)]
 pub struct Questions {
     asked: Vec<Question>,
@@ -60,8 +60,10 @@ impl Questions {
 /// The call of a routine that is going on in this thread.
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
-    /// what it may ask for; in its first call, what it has asked for so far
+    /// what it may ask for; nothing in the first call
     pub questions: Arc<Questions>,
+    /// what it has asked for in the first call
+    pub found: Questions,
     /// values of the inputs; none in the first call
     pub values: Vec<f64>,
     /// it is the first call
@@ -102,7 +104,7 @@ impl Asked {
         }
         let input = written(name, ids)?;
         if self.is_first {
-            Arc::make_mut(&mut self.questions).add(name, ids, input);
+            self.found.add(name, ids, input);
             return Some(0.0);
         }
         let Some(k) = self.questions.position(&input) else {
@@ -141,10 +143,7 @@ const ARRAYS: &[(&str, &[Components])] = &[
     ("FORCE", &[FORCE, TORQUE]),
 ];
 
-/// Values that a name of SYSARY has, at most.
-pub const MOST_VALUES: usize = 6;
-
-/// Writes a call: `DX(1,2)`, zeros at the end left out; `None`: the language has no such function.
+/// Writes a call: `DX(1, 2)`, zeros at the end left out; `None`: the language has no such function.
 fn written(name: &str, ids: &[i32]) -> Option<String> {
     let given = ids.iter().rposition(|id| *id != 0).map_or(0, |k| k + 1);
     let all: Vec<String> = ids[..given].iter().map(ToString::to_string).collect();
@@ -159,16 +158,12 @@ pub fn ask(name: &str, ids: &[i32]) -> Option<f64> {
     CALL.with(|c| c.borrow_mut().as_mut()?.value(name, ids))
 }
 
-/// Puts the values of an array (`DISP`, `TVEL`) into their places; returns how many there are.
-pub fn ask_array(name: &str, ids: &[i32], values: &mut [f64; MOST_VALUES]) -> Option<usize> {
+/// Returns the values of an array (`DISP`, `TVEL`): three or six.
+pub fn ask_array(name: &str, ids: &[i32]) -> Option<Vec<f64>> {
     let row = ARRAYS.iter().find(|row| row.0.eq_ignore_ascii_case(name))?;
     let all = row.1.iter().copied().flatten();
-    let mut n = 0;
-    for (place, (function, most)) in values.iter_mut().zip(all) {
-        *place = ask(function, &ids[..ids.len().min(*most)])?;
-        n += 1;
-    }
-    Some(n)
+    all.map(|(function, most)| ask(function, &ids[..ids.len().min(*most)]))
+        .collect()
 }
 
 /// Returns TIME, if a routine is being called.
@@ -199,9 +194,9 @@ mod tests {
             assert_eq!(ask("VARVAL", &[3]), Some(0.0));
             assert_eq!(ask("NOTHING", &[3]), None);
         });
-        assert_eq!(first.questions.inputs, ["DX(1,2)", "VARVAL(3)"]);
+        assert_eq!(first.found.inputs, ["DX(1, 2)", "VARVAL(3)"]);
         let later = Asked {
-            questions: first.questions,
+            questions: Arc::new(first.found),
             values: vec![5.0, 7.0],
             ..Asked::default()
         };
@@ -211,7 +206,7 @@ mod tests {
             assert_eq!(ask("DX", &[1, 2]), Some(5.0));
             assert_eq!(ask("DY", &[1, 2]), Some(0.0));
         });
-        assert_eq!(later.lacking.as_deref(), Some("DY(1,2)"));
+        assert_eq!(later.lacking.as_deref(), Some("DY(1, 2)"));
         assert_eq!(ask("DX", &[1, 2]), None);
     }
 
@@ -219,11 +214,10 @@ mod tests {
     fn every_array_asks_for_functions_that_exist() {
         for (name, _) in ARRAYS {
             let all = within(Asked::first(), || {
-                let mut values = [0.0; MOST_VALUES];
-                let n = ask_array(name, &[1, 2, 3, 4], &mut values);
-                assert!(n.is_some_and(|n| n % 3 == 0), "{name}");
+                let values = ask_array(name, &[1, 2, 3, 4]);
+                assert!(values.is_some_and(|v| v.len() % 3 == 0), "{name}");
             });
-            assert!(all.questions.inputs.len() >= 3);
+            assert!(all.found.inputs.len() >= 3);
         }
     }
 }

@@ -14,7 +14,8 @@ C
       DOUBLE PRECISION TIME, PAR(*), VALUE
       LOGICAL DFLAG, IFLAG
       CALL USRMES(IFLAG, 'a message', ID, 'INFO')
-      CALL ERRMES(TIME .GT. 0.5D0, 'half a second is enough', ID, 'STOP')
+      CALL ERRMES(TIME .GT. 0.5D0, 'half a second is enough',
+     &            ID, 'STOP')
       VALUE = 0D0
       END
 C
