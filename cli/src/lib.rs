@@ -14,6 +14,7 @@ mod anatomy;
 mod animate;
 mod arguments;
 mod assembly;
+mod attended;
 mod card;
 mod check;
 mod completions;

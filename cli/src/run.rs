@@ -1,26 +1,23 @@
 //! `cognate run`: a model with its commands, from file to results.
 
 use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, whole_from_one};
+use super::attended::Attended;
 use super::doubted;
-use super::limit::{Guard, simulations_to_the_end};
+use super::limit::Guard;
 use super::mistake::Mistake;
-use super::progress::Progress;
 use super::render::Sources;
 use super::setup::{self, Asked, Prepared, Setup};
 use super::{Exit, Failure, Outcome, interrupt, linear, output, piped, remark, say, summary};
-use cognate::analysis::session::script::obey;
 use cognate::analysis::session::state::{self, Saved};
 use cognate::analysis::session::{Accuracy, Chosen, Options, Session, check_column};
-use cognate::analysis::watch::Watch;
 use cognate::analysis::work_limit::ProcessClock;
 use cognate::dataset::command::{Command, Script, SimulationKind, Step};
 use cognate::dataset::{self, Dataset, Reading};
 use cognate::diagnostic::{Cause, Diagnostic, Error, Severity};
 use cognate::disk;
 use cognate::model::{ElementKind, Family, Model, SettingsStatement};
-use cognate::numeric::Stats;
 use cognate::results::format::Format;
-use cognate::results::{Event, Loads, Run, Status, json};
+use cognate::results::{Event, Loads, Status, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -106,39 +103,6 @@ pub struct Args {
     json: bool,
 }
 
-/// Shows progress and listens for Ctrl-C.
-struct Terminal<'a> {
-    progress: &'a std::cell::RefCell<Progress>,
-    tables: output::Tables,
-    guard: &'a Guard,
-    /// simulations that are still to begin, where nothing comes after the last of them
-    left: &'a std::cell::Cell<Option<usize>>,
-    /// what a routine has done wrong
-    mistake: &'a Mistake,
-}
-
-impl Watch for Terminal<'_> {
-    fn interrupted(&mut self) -> bool {
-        interrupt::requested() || self.tables.have_failed() || self.mistake.is_there()
-    }
-    fn progress(&mut self, t: f64, _h: f64, stats: &Stats) {
-        interrupt::results_begin();
-        self.guard.moves();
-        self.progress.borrow().at(t, stats.steps);
-    }
-    fn measures(&mut self, t: f64, stats: &Stats) {
-        self.guard.moves();
-        self.progress.borrow().measures(t, stats.steps);
-    }
-    fn simulated(&mut self, run: &Run) {
-        match self.left.get() {
-            // only writing is left, and nobody needs a copy
-            Some(0) => self.guard.done(),
-            _ => self.guard.keep(run),
-        }
-    }
-}
-
 /// Runs a model with its commands and writes its results.
 ///
 /// # Errors
@@ -189,7 +153,8 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     guard.follow(&session, &tables);
 
     // solve
-    let outcome = solve(args, &mut session, &steps, (&tables, &guard, &mistake));
+    let attended = attended(args, (&tables, &guard, &mistake));
+    let outcome = attended.solve(&mut session, &steps);
     let (status, failure) = told(&mut session, outcome);
     let elapsed = clock.elapsed().as_secs_f64();
     let cpu = clock.seconds();
@@ -449,34 +414,17 @@ fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session 
     session
 }
 
-/// Obeys the commands of a run, with a bar of its progress.
-fn solve(
+/// Returns what a run is attended by.
+fn attended<'a>(
     args: &Args,
-    session: &mut Session,
-    steps: &[Step],
-    (tables, guard, mistake): (&output::Tables, &Guard, &Mistake),
-) -> Result<Status, Error> {
-    let progress = std::cell::RefCell::new(Progress::new(true, 0.0, 1.0));
-    // bars of error come after the rows
-    let left = simulations_to_the_end(steps).filter(|_| !args.accuracy);
-    let left = std::cell::Cell::new(left);
-    let begin = |start: f64, end: f64| {
-        left.set(left.get().map(|n| n.saturating_sub(1)));
-        progress.borrow().done();
-        *progress.borrow_mut() = Progress::new(args.quiet, start, end);
-    };
-    let mut terminal = Terminal {
-        progress: &progress,
-        tables: tables.clone(),
+    (tables, guard, mistake): (&'a output::Tables, &'a Guard, &'a Mistake),
+) -> Attended<'a> {
+    Attended {
+        is_quiet: args.quiet,
+        has_bars: args.accuracy,
+        tables,
         guard,
-        left: &left,
         mistake,
-    };
-    let outcome = obey(session, steps, begin, &mut terminal);
-    progress.borrow().done();
-    match mistake.take() {
-        Some(mistake) => Err(mistake.into()),
-        None => outcome,
     }
 }
 

@@ -127,7 +127,7 @@ impl RoutineArgs {
         hooks
             .into_iter()
             .for_each(|hook| session.register_hook(hook));
-        let names = self.libraries.iter().map(|path| disk::text(path));
+        let names = self.libraries.iter().map(disk::text);
         let event = |name| Event::Info(format!("routines: {name}"));
         session.run.log.extend(names.map(event));
         Ok(mistake)
