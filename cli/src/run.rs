@@ -153,8 +153,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     guard.follow(&session, &tables);
 
     // solve
-    let attended = attended(args, (&tables, &guard, &mistake));
-    let outcome = attended.solve(&mut session, &steps);
+    let outcome = attended(args, (&tables, &guard, &mistake)).solve(&mut session, &steps);
     let (status, failure) = told(&mut session, outcome);
     let elapsed = clock.elapsed().as_secs_f64();
     let cpu = clock.seconds();
