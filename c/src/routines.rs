@@ -12,9 +12,9 @@
 use crate::door::{Data, door, row, text, usage};
 use crate::error::CognateError;
 use crate::session::{CognateSession, Failure, Inner};
-use crate::utilities::{Asked, within};
 use engine::Error;
 use engine::diagnostic::Diagnostic;
+use engine::internals::system::asked::{Asked, within};
 use engine::internals::system::closures::Call;
 use engine::model::ElementKind as K;
 use engine::model::{ElementId, ElementKind, Formula, Model};
@@ -172,25 +172,21 @@ pub fn register(inner: &mut Inner, element: ElementId, routine: Routine) -> Resu
         ));
     };
     let id = c_int::try_from(element.number).unwrap_or(c_int::MAX);
-    let first = Asked {
-        finding: true,
-        ..Asked::default()
-    };
     let mut nothing = [0.0; MOST_RESULTS];
-    let first = within(first, || {
+    let first = within(Asked::first(), || {
         routine.call(id, 0.0, constants, true, &mut nothing)
     });
-    let inputs = Arc::new(first.found);
+    let known = Arc::new(first.found);
+    let inputs = known.inputs.clone();
     let names: Vec<&str> = inputs.iter().map(String::as_str).collect();
     let failure = inner.failure.clone();
-    let known = Arc::clone(&inputs);
     inner
         .session
         .register(&element.to_string(), &names, move |call, results| {
-            let (inputs, values) = (Arc::clone(&known), call.values.to_vec());
             let asked = Asked {
-                inputs,
-                values,
+                questions: Arc::clone(&known),
+                values: call.values.to_vec(),
+                time: call.time,
                 ..Asked::default()
             };
             let asked = within(asked, || {

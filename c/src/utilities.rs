@@ -4,134 +4,8 @@
 //! computed, and what it asks for then becomes the inputs of its element. Later it is told their
 //! values. It must ask for all it reads in that first call, as Adams wants it to.
 
-use engine::expr;
-use engine::expr::ast::Dialect;
-use std::cell::RefCell;
+use engine::internals::system::asked::{ask, ask_array};
 use std::ffi::{CStr, c_char, c_int};
-use std::sync::Arc;
-
-/// The call of a routine that is going on in this thread.
-#[derive(Clone, Debug, Default)]
-pub struct Asked {
-    /// inputs of its element: expressions
-    pub inputs: Arc<Vec<String>>,
-    /// their values; empty while inputs are being found out
-    pub values: Vec<f64>,
-    /// inputs that it has asked for in the first call
-    pub found: Vec<String>,
-    /// it is the first call
-    pub finding: bool,
-    /// an input that it has asked for, but not in the first call
-    pub lacking: Option<String>,
-}
-
-thread_local! {
-    static CALL: RefCell<Option<Asked>> = const { RefCell::new(None) };
-}
-
-/// Calls a routine that may ask; returns what it has asked.
-pub fn within(call: Asked, routine: impl FnOnce()) -> Asked {
-    let before = CALL.with(|c| c.replace(Some(call)));
-    routine();
-    CALL.with(|c| c.replace(before)).unwrap_or_default()
-}
-
-impl Asked {
-    fn value(&mut self, input: String) -> f64 {
-        if self.finding {
-            if !self.found.contains(&input) {
-                self.found.push(input);
-            }
-            return 0.0;
-        }
-        match self.inputs.iter().position(|known| *known == input) {
-            Some(k) => self.values.get(k).copied().unwrap_or(0.0),
-            None => {
-                self.lacking.get_or_insert(input);
-                0.0
-            }
-        }
-    }
-}
-
-/// Names of SYSARY: their functions, and how many markers each takes.
-const ARRAYS: &[(&str, &[(&str, usize)])] = &[
-    ("TDISP", &[("DX", 3), ("DY", 3), ("DZ", 3)]),
-    ("RDISP", &[("PSI", 2), ("THETA", 2), ("PHI", 2)]),
-    (
-        "DISP",
-        &[
-            ("DX", 3),
-            ("DY", 3),
-            ("DZ", 3),
-            ("PSI", 2),
-            ("THETA", 2),
-            ("PHI", 2),
-        ],
-    ),
-    ("TVEL", &[("VX", 4), ("VY", 4), ("VZ", 4)]),
-    ("RVEL", &[("WX", 3), ("WY", 3), ("WZ", 3)]),
-    (
-        "VEL",
-        &[
-            ("VX", 4),
-            ("VY", 4),
-            ("VZ", 4),
-            ("WX", 3),
-            ("WY", 3),
-            ("WZ", 3),
-        ],
-    ),
-    ("TACC", &[("ACCX", 4), ("ACCY", 4), ("ACCZ", 4)]),
-    ("RACC", &[("WDTX", 4), ("WDTY", 4), ("WDTZ", 4)]),
-    (
-        "ACC",
-        &[
-            ("ACCX", 4),
-            ("ACCY", 4),
-            ("ACCZ", 4),
-            ("WDTX", 4),
-            ("WDTY", 4),
-            ("WDTZ", 4),
-        ],
-    ),
-    ("TFORCE", &[("FX", 3), ("FY", 3), ("FZ", 3)]),
-    ("RFORCE", &[("TX", 3), ("TY", 3), ("TZ", 3)]),
-    (
-        "FORCE",
-        &[
-            ("FX", 3),
-            ("FY", 3),
-            ("FZ", 3),
-            ("TX", 3),
-            ("TY", 3),
-            ("TZ", 3),
-        ],
-    ),
-];
-
-/// Writes a call: `DX(1, 2)`, trailing zeros left out; `None`: the language has no such function.
-fn written(name: &str, ids: &[c_int]) -> Option<String> {
-    let all: Vec<String> = ids.iter().map(ToString::to_string).collect();
-    let given = ids.iter().rposition(|id| *id != 0).map_or(0, |k| k + 1);
-    let text = format!("{}({})", name.to_uppercase(), all[..given].join(","));
-    let input = expr::input_named(&text, Dialect::Function).ok()?;
-    Some(input.to_string())
-}
-
-fn ask(name: &str, ids: &[c_int]) -> Option<f64> {
-    let text = written(name, ids)?;
-    CALL.with(|c| c.borrow_mut().as_mut().map(|call| call.value(text)))
-}
-
-/// Puts the values of an array into their places; returns how many there are.
-fn ask_array(name: &str, ids: &[c_int], states: &mut [f64; 6]) -> Option<usize> {
-    let row = ARRAYS.iter().find(|row| row.0.eq_ignore_ascii_case(name))?;
-    for (place, (function, most)) in states.iter_mut().zip(row.1) {
-        *place = ask(function, &ids[..ids.len().min(*most)])?;
-    }
-    Some(row.1.len())
-}
 
 /// Reads a function of the model (DX, VM, VARVAL …) from within a routine, as SYSFNC of Adams.
 ///
@@ -175,18 +49,18 @@ pub unsafe extern "C" fn cognate_sysary(
     let name = (!name.is_null()).then(|| unsafe { CStr::from_ptr(name) });
     // SAFETY: NULL or `n` numbers; NULL or places
     let (ids, n_values, failed) = unsafe { (numbers(ids, n), n_values.as_mut(), failed.as_mut()) };
-    let mut states = [0.0; 6];
-    let found = name.and_then(|name| ask_array(name.to_str().ok()?.trim(), ids, &mut states));
-    let count = found.unwrap_or(0);
+    let found = name.and_then(|name| ask_array(name.to_str().ok()?.trim(), ids));
+    let is_lacking = found.is_none();
+    let found = found.unwrap_or_default();
     if !values.is_null() {
         // SAFETY: there are as many places as the name has values
-        unsafe { std::slice::from_raw_parts_mut(values, count) }.copy_from_slice(&states[..count]);
+        unsafe { std::slice::from_raw_parts_mut(values, found.len()) }.copy_from_slice(&found);
     }
     if let Some(n_values) = n_values {
-        *n_values = count as c_int;
+        *n_values = found.len() as c_int;
     }
     if let Some(failed) = failed {
-        *failed = c_int::from(found.is_none());
+        *failed = c_int::from(is_lacking);
     }
 }
 

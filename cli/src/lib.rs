@@ -5,12 +5,16 @@
 //! streams. Results go to standard output, everything about them (mistakes, warnings, progress) to
 //! standard error.
 
-#![cfg_attr(not(feature = "native"), forbid(unsafe_code))]
+#![cfg_attr(
+    not(any(feature = "native", feature = "routines")),
+    forbid(unsafe_code)
+)]
 
 mod anatomy;
 mod animate;
 mod arguments;
 mod assembly;
+mod attended;
 mod card;
 mod check;
 mod completions;
@@ -38,6 +42,7 @@ mod linear;
 mod loads;
 mod mdi;
 mod memory;
+mod mistake;
 mod modes;
 mod motion;
 mod moved;
@@ -50,6 +55,8 @@ mod render;
 mod repl;
 mod report;
 mod response;
+#[cfg(all(unix, feature = "routines"))]
+mod routines;
 mod run;
 mod runs;
 mod setup;
@@ -228,9 +235,11 @@ impl Failure {
             sources,
         }
     }
-    /// Creates a failure from mistakes in a model, each at the statement of its element.
+    /// Creates a failure from mistakes in a model, each at the statement of its element. Routines
+    /// that nobody has are one mistake, however many ask for them.
     pub fn in_model(dataset: &Dataset, diagnostics: impl Into<Vec<Diagnostic>>) -> Self {
-        let located = diagnostics.into().into_iter().map(|d| dataset.locate(d));
+        let diagnostics = with_one_lack_of_routines(diagnostics.into());
+        let located = diagnostics.into_iter().map(|d| dataset.locate(d));
         Self::in_files(Exit::Model, located.collect())
     }
     /// Creates a failure from a mistake in an argument of the command line, which is shown with its
@@ -265,6 +274,33 @@ impl Failure {
             ..Self::from(Diagnostic::error("usage", message))
         }
     }
+}
+
+/// Returns mistakes with those in one that differ in nothing but who asks for a routine.
+fn with_one_lack_of_routines(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let what = |d: &Diagnostic| (d.message.clone(), d.severity);
+    let is_lack = |d: &Diagnostic| d.is(Cause::UserRoutine) && d.element.is_some();
+    let mut all: Vec<Diagnostic> = Vec::with_capacity(diagnostics.len());
+    let mut others: Vec<(usize, Vec<String>)> = Vec::new();
+    for d in diagnostics {
+        let before = match is_lack(&d) {
+            true => (all.iter()).position(|e| is_lack(e) && what(e) == what(&d)),
+            false => None,
+        };
+        let Some(k) = before else {
+            all.push(d);
+            continue;
+        };
+        let name = d.subject().unwrap_or_default().to_string();
+        match others.iter_mut().find(|(first, _)| *first == k) {
+            Some((_, names)) => names.push(name),
+            None => others.push((k, vec![name])),
+        }
+    }
+    for (k, names) in others {
+        all[k].message = format!("{}; likewise {}", all[k].message, names.join(", "));
+    }
+    all
 }
 
 /// The result of a verb.

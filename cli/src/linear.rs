@@ -48,6 +48,9 @@ pub struct Args {
     writing: WritingArgs,
     #[command(flatten)]
     unsolved: UnsolvedArgs,
+    #[cfg(all(unix, feature = "routines"))]
+    #[command(flatten)]
+    routines: super::routines::RoutineArgs,
     /// Print everything as JSON
     #[arg(long)]
     json: bool,
@@ -87,6 +90,8 @@ pub fn run(args: &Args) -> Outcome {
         .collect();
     let dataset = reading.dataset;
     let in_model = |errors| Failure::in_model(&dataset, errors);
+    #[cfg(all(unix, feature = "routines"))]
+    let mistake = (args.routines).compute(&mut session, &dataset, args.unsolved.zero_user)?;
     let mut status = obey(&mut session, &steps, |_, _| (), &mut Quiet).map_err(in_model)?;
     if args.settle && status == Status::Completed {
         let now = session.time();
@@ -113,6 +118,10 @@ pub fn run(args: &Args) -> Outcome {
         shapes: None,
     };
     let found = session.linearize(&wanted).map_err(in_model)?;
+    #[cfg(all(unix, feature = "routines"))]
+    if let Some(mistake) = mistake.take() {
+        return Err(in_model(mistake.into()));
+    }
     let warnings = summary::warnings(&session.run.record.warnings);
     if args.json {
         let mut all = found.json();

@@ -1,25 +1,23 @@
 //! `cognate run`: a model with its commands, from file to results.
 
 use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, whole_from_one};
+use super::attended::Attended;
 use super::doubted;
-use super::limit::{Guard, simulations_to_the_end};
-use super::progress::Progress;
+use super::limit::Guard;
+use super::mistake::Mistake;
 use super::render::Sources;
 use super::setup::{self, Asked, Prepared, Setup};
 use super::{Exit, Failure, Outcome, interrupt, linear, output, piped, remark, say, summary};
-use cognate::analysis::session::script::obey;
 use cognate::analysis::session::state::{self, Saved};
 use cognate::analysis::session::{Accuracy, Chosen, Options, Session, check_column};
-use cognate::analysis::watch::Watch;
 use cognate::analysis::work_limit::ProcessClock;
 use cognate::dataset::command::{Command, Script, SimulationKind, Step};
 use cognate::dataset::{self, Dataset, Reading};
 use cognate::diagnostic::{Cause, Diagnostic, Error, Severity};
 use cognate::disk;
 use cognate::model::{ElementKind, Family, Model, SettingsStatement};
-use cognate::numeric::Stats;
 use cognate::results::format::Format;
-use cognate::results::{Event, Loads, Run, Status, json};
+use cognate::results::{Event, Loads, Status, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -71,6 +69,9 @@ pub struct Args {
     repeat: usize,
     #[command(flatten)]
     unsolved: UnsolvedArgs,
+    #[cfg(all(unix, feature = "routines"))]
+    #[command(flatten)]
+    routines: super::routines::RoutineArgs,
     #[command(flatten)]
     limits: LimitArgs,
     /// Threads for mechanisms that nothing couples, which change no result [default: as many as
@@ -100,37 +101,6 @@ pub struct Args {
     /// Print the run record as JSON
     #[arg(long)]
     json: bool,
-}
-
-/// Shows progress and listens for Ctrl-C.
-struct Terminal<'a> {
-    progress: &'a std::cell::RefCell<Progress>,
-    tables: output::Tables,
-    guard: &'a Guard,
-    /// simulations that are still to begin, where nothing comes after the last of them
-    left: &'a std::cell::Cell<Option<usize>>,
-}
-
-impl Watch for Terminal<'_> {
-    fn interrupted(&mut self) -> bool {
-        interrupt::requested() || self.tables.have_failed()
-    }
-    fn progress(&mut self, t: f64, _h: f64, stats: &Stats) {
-        interrupt::results_begin();
-        self.guard.moves();
-        self.progress.borrow().at(t, stats.steps);
-    }
-    fn measures(&mut self, t: f64, stats: &Stats) {
-        self.guard.moves();
-        self.progress.borrow().measures(t, stats.steps);
-    }
-    fn simulated(&mut self, run: &Run) {
-        match self.left.get() {
-            // only writing is left, and nobody needs a copy
-            Some(0) => self.guard.done(),
-            _ => self.guard.keep(run),
-        }
-    }
 }
 
 /// Runs a model with its commands and writes its results.
@@ -172,6 +142,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     check_columns(args, &model, &steps)?;
     let name = args.name.as_ref().unwrap_or(&job.base);
     let mut session = open(args, (model, is_as_read), name);
+    let mistake = routines(args, &mut session, &dataset)?;
     let seconds = &mut session.run.record.seconds;
     seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;
@@ -182,7 +153,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     guard.follow(&session, &tables);
 
     // solve
-    let outcome = solve(args, &mut session, &steps, (&tables, &guard));
+    let outcome = attended(args, (&tables, &guard, &mistake)).solve(&mut session, &steps);
     let (status, failure) = told(&mut session, outcome);
     let elapsed = clock.elapsed().as_secs_f64();
     let cpu = clock.seconds();
@@ -442,31 +413,28 @@ fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session 
     session
 }
 
-/// Obeys the commands of a run, with a bar of its progress.
-fn solve(
+/// Returns what a run is attended by.
+fn attended<'a>(
     args: &Args,
-    session: &mut Session,
-    steps: &[Step],
-    (tables, guard): (&output::Tables, &Guard),
-) -> Result<Status, Error> {
-    let progress = std::cell::RefCell::new(Progress::new(true, 0.0, 1.0));
-    // bars of error come after the rows
-    let left = simulations_to_the_end(steps).filter(|_| !args.accuracy);
-    let left = std::cell::Cell::new(left);
-    let begin = |start: f64, end: f64| {
-        left.set(left.get().map(|n| n.saturating_sub(1)));
-        progress.borrow().done();
-        *progress.borrow_mut() = Progress::new(args.quiet, start, end);
-    };
-    let mut terminal = Terminal {
-        progress: &progress,
-        tables: tables.clone(),
+    (tables, guard, mistake): (&'a output::Tables, &'a Guard, &'a Mistake),
+) -> Attended<'a> {
+    Attended {
+        is_quiet: args.quiet,
+        has_bars: args.accuracy,
+        tables,
         guard,
-        left: &left,
-    };
-    let outcome = obey(session, steps, begin, &mut terminal);
-    progress.borrow().done();
-    outcome
+        mistake,
+    }
+}
+
+/// Has the routines of libraries compute what USER stands for, where the command line gives any.
+fn routines(args: &Args, session: &mut Session, dataset: &Dataset) -> Result<Mistake, Failure> {
+    #[cfg(all(unix, feature = "routines"))]
+    return args
+        .routines
+        .compute(session, dataset, args.unsolved.zero_user);
+    #[cfg(not(all(unix, feature = "routines")))]
+    Ok(Mistake::default())
 }
 
 /// The model and the commands of a run.

@@ -32,12 +32,16 @@ impl Kind {
 
 /// Options of the command line, and the keywords for the same in Python; `*` stands for the word
 /// behind.
-const KEYWORDS: [(&str, &str); 5] = [
+const KEYWORDS: [(&str, &str); 6] = [
     ("--skip-unsupported *", "skip=[\"*\"]"),
     ("--zero-user", "zero_user=True"),
     ("--piecewise", "piecewise=True"),
     ("--method *", "method=\"*\""),
     ("--error", "error"),
+    (
+        "load the library that has it (--routines), register a closure for it in a program",
+        "register a function for it (Model.user)",
+    ),
 ];
 
 /// Returns a text with the keywords of Python in place of the options of the command line.

@@ -722,8 +722,9 @@ too: GSTIFF, WSTIFF, HASTIFF, CONSTANT_BDF, HHT and NEWMARK are done by RADAU5, 
         name: "user_routine",
         summary: "USER stands for a routine that is not part of the dataset",
         explanation: "\
-FUNCTION=USER(...) calls a compiled routine that only its author has. There are three ways on:
+FUNCTION=USER(...) calls a compiled routine that is no part of the dataset. There are four ways on:
 
+    --routines forces.so                     the library that has it (docs/routines.md); its code is run, with your rights
     --zero-user                              what it would compute is zero: structure, weights and stiffness can be looked at
     session.register(\"SFORCE/3\", ...)       a closure of yours computes it, in a program that uses cognate as a library
     DEACTIVATE/SFORCE, ID=3                  in the command file: without the element

@@ -41,7 +41,7 @@ pub struct Options {
     pub skip: BTreeSet<ElementKind>,
     /// closures for `USER(…)`
     pub hooks: Vec<HookName>,
-    /// what `USER(…)` would compute is zero
+    /// what `USER(…)` would compute is zero where no closure computes it
     pub zero_user: bool,
     /// VARIABLEs to which numbers from outside are added: inputs of a linear system
     pub plant_inputs: Vec<u32>,

@@ -113,18 +113,18 @@ impl Builder<'_> {
         let ModelFormula::User { constants, .. } = formula else {
             return vec![self.formula(c, owner, formula); n];
         };
-        if self.zero_user {
-            return vec![self.compiled(c, owner, &"0".into()); n];
-        }
         let known = owner.owner().and_then(|element| {
             let mut hooks = self.hooks.iter();
             let closure = hooks.rposition(|h| h.stands_for(element, formula));
             closure.map(|closure| (element, closure))
         });
         let Some((element, closure)) = known else {
+            if self.zero_user {
+                return vec![self.compiled(c, owner, &"0".into()); n];
+            }
             let message = "USER needs a routine that is not part of the dataset";
             c.errors.push(Diagnostic::error(Cause::UserRoutine, message).element(owner).help(
-                "register a closure for it through the library, switch the element off, or take what USER would compute as zero (--zero-user)",
+                "load the library that has it (--routines), register a closure for it in a program, switch the element off, or take what USER would compute as zero (--zero-user)",
             ));
             return vec![usize::MAX; n];
         };

@@ -17,7 +17,7 @@ const PACKAGES: [(&str, &str, &[&str]); 2] = [
             "CHANGELOG.md",
         ],
     ),
-    ("cognate-cli", "cli", &[]),
+    ("cognate-cli", "cli", &["build.rs"]),
 ];
 /// Files of every package; the first is made by cargo.
 const EVERYWHERE: [&str; 6] = [

@@ -14,16 +14,20 @@ fn commands(page: &str) -> String {
 
 /// Runs the commands of a page in a folder of its own, with the slider-crank; each must succeed.
 fn runs_as_it_stands(name: &str) {
-    let root = root("");
-    let page = std::fs::read_to_string(root.join("docs").join(name)).unwrap();
-    let text = commands(&page);
-    assert!(text.lines().count() > 5, "{text}");
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("page_{name}"));
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     for file in ["slider_crank.adm", "slider_crank.acf"] {
-        std::fs::copy(root.join("examples").join(file), folder.join(file)).unwrap();
+        std::fs::copy(root("examples").join(file), folder.join(file)).unwrap();
     }
+    runs_in(&folder, name);
+}
+
+/// Runs the commands of a page in a folder; each must succeed.
+pub fn runs_in(folder: &Path, name: &str) {
+    let page = std::fs::read_to_string(root("docs").join(name)).unwrap();
+    let text = commands(&page);
+    assert!(text.lines().count() > 5, "{text}");
     let program = Path::new(env!("CARGO_BIN_EXE_cognate")).parent().unwrap();
     let mut places = vec![program.to_owned()];
     places.extend(std::env::split_paths(
@@ -32,7 +36,7 @@ fn runs_as_it_stands(name: &str) {
     let done = Command::new("sh")
         .args(["-e", "-x", "-c", &text])
         .env("PATH", std::env::join_paths(places).unwrap())
-        .current_dir(&folder)
+        .current_dir(folder)
         .output()
         .unwrap();
     let said = String::from_utf8_lossy(&done.stderr);

@@ -37,6 +37,8 @@ mod readers;
 mod recorded;
 mod report;
 mod results;
+#[cfg(unix)]
+mod routines;
 mod runs;
 mod sweep;
 mod threads;

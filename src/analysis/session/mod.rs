@@ -130,7 +130,7 @@ pub struct Options {
     pub piecewise: bool,
     /// kinds of elements that are left out where they are not solved
     pub skip: std::collections::BTreeSet<ElementKind>,
-    /// take what `USER(…)` would compute as zero
+    /// take what `USER(…)` would compute as zero where no closure computes it
     pub zero_user: bool,
     /// steps that one integration may try, accepted or not, before it ends with [`Status::Limit`];
     /// `None`: any number

@@ -9,12 +9,14 @@
 //! downstream   ẋ = g(t, y, x) of what reads the mechanism and is not read by it
 //! numbers      of an instant, from time and state; speeds, accepted: what is asked of them
 //! external_inputs (past, closures), sensors, samples     numbers that programs read but do not compute
+//! asked        what a user's routine asks of the model
 //! peaks, time_events, clocks, tunnelling, singular_step     how long a step may be
 //! ```
 
 mod accepted;
 mod algebraic_loops;
 mod aside;
+pub mod asked;
 pub(super) mod bounds;
 pub mod branches;
 mod clocks;

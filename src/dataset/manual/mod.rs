@@ -119,7 +119,7 @@ const fn k(name: &'static str, meaning: &'static str) -> Note {
 /// ROUTINE beside FUNCTION=USER(…), the same everywhere.
 const ROUTINE: Note = f(
     "ROUTINE",
-    "Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines are given to the library as closures.",
+    "Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run --routines` loads libraries that have it; programs register closures.",
 );
 /// Marker I of an element between two markers.
 const I: Note = f("I", "The I marker: the element acts on its part.");

@@ -123,7 +123,7 @@ pub(super) static PAGES: &[Page] = &[
     Page {
         keyword: "GSE",
         summary: "A system of equations computed by routines: continuous and sampled states, and outputs.",
-        text: "Routines are given to the library as closures. `run --zero-user` takes what they would compute as zero.",
+        text: "`run --routines` loads libraries of routines (GSESUB, without discrete states); programs register closures. `run --zero-user` takes what nobody computes as zero.",
         equation: "x' = f(x, xd, u, t)      xd at each sample = g(x, xd, u, t)      y = h(x, xd, u, t)",
         effect: Effect::Solved,
         notes: &[

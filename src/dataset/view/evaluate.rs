@@ -4,6 +4,7 @@ use super::database::{Attribute, Database, Datum, Fixed, Item, Reference};
 use super::frames::Reading;
 use super::term::{Binary, Shared, Term};
 use crate::diagnostic::{Diagnostic, Span};
+use crate::scalar::Scalar;
 use std::rc::Rc;
 
 /// Expressions that read one another, one within the other.
@@ -444,7 +445,7 @@ fn computed(operator: Binary, a: f64, b: f64) -> Result<f64, Trouble> {
         Binary::Subtract => a - b,
         Binary::Multiply => a * b,
         Binary::Divide => a / b,
-        Binary::Power => a.powf(b),
+        Binary::Power => Scalar::powf(a, b),
         Binary::Join => f64::NAN,
     };
     match value.is_finite() {

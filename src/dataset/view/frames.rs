@@ -10,6 +10,7 @@
 
 use super::database::{Attribute, Coordinates, Database, Datum, Pose, Reference, Sequence};
 use super::evaluate::Trouble;
+use crate::scalar::Scalar;
 use crate::space::{Mat3, Vec3, rotation};
 
 /// The frame in which locations are read: that of an argument, or that of an object's own numbers.
@@ -43,13 +44,17 @@ pub(super) fn turned(sequence: Sequence, angles: [f64; 3]) -> Mat3<f64> {
 /// the third is 0.
 pub(super) fn angles_313(R: Mat3<f64>) -> [f64; 3] {
     let m = R.0;
-    let sine = m[0][2].hypot(m[1][2]);
-    let theta = sine.atan2(m[2][2]);
+    let sine = (m[0][2] * m[0][2] + m[1][2] * m[1][2]).sqrt();
+    let theta = Scalar::atan2(sine, m[2][2]);
     // the square of the sine is below rounding: z and z' are one line
     if sine < f64::EPSILON.sqrt() {
-        return [m[1][0].atan2(m[0][0]), theta, 0.0];
+        return [Scalar::atan2(m[1][0], m[0][0]), theta, 0.0];
     }
-    [m[0][2].atan2(-m[1][2]), theta, m[2][0].atan2(m[2][1])]
+    let (psi, phi) = (
+        Scalar::atan2(m[0][2], -m[1][2]),
+        Scalar::atan2(m[2][0], m[2][1]),
+    );
+    [psi, theta, phi]
 }
 
 /// Returns numbers without what rounding has left of a zero beside larger ones.
@@ -175,12 +180,12 @@ impl Database {
 
     /// Returns three numbers of a location as x, y, z.
     fn cartesian(&self, [r, angle, third]: [f64; 3]) -> [f64; 3] {
-        let (s, c) = (angle * self.units.angle()).sin_cos();
+        let (s, c) = Scalar::sin_cos(angle * self.units.angle());
         match self.coordinates {
             Coordinates::Cartesian => [r, angle, third],
             Coordinates::Cylindrical => [r * c, r * s, third],
             Coordinates::Spherical => {
-                let (across, along) = (third * self.units.angle()).sin_cos();
+                let (across, along) = Scalar::sin_cos(third * self.units.angle());
                 [r * across * c, r * across * s, r * along]
             }
         }

@@ -6,6 +6,7 @@ use super::database::{Database, Datum, Pose};
 use super::evaluate::Trouble;
 use super::frames::{Reading, angles_313, cleaned, turned};
 use super::term::Term;
+use crate::scalar::Scalar;
 use crate::space::{Mat3, Vec3};
 
 /// Returns the axis of a letter.
@@ -167,7 +168,7 @@ impl Database {
                 needs(2)?;
                 let (x, y) = (all[0], all[1]);
                 match name {
-                    "atan2" => x.atan2(y) / angle,
+                    "atan2" => Scalar::atan2(x, y) / angle,
                     "dim" => (x - y).max(0.0),
                     "sign" => x.abs().copysign(y),
                     _ => x % y,
@@ -177,20 +178,20 @@ impl Database {
                 needs(1)?;
                 let x = all[0];
                 match name {
-                    "sin" => (x * angle).sin(),
-                    "cos" => (x * angle).cos(),
-                    "tan" => (x * angle).tan(),
-                    "asin" => x.asin() / angle,
-                    "acos" => x.acos() / angle,
-                    "atan" => x.atan() / angle,
+                    "sin" => Scalar::sin(x * angle),
+                    "cos" => Scalar::cos(x * angle),
+                    "tan" => Scalar::tan(x * angle),
+                    "asin" => Scalar::asin(x) / angle,
+                    "acos" => Scalar::acos(x) / angle,
+                    "atan" => Scalar::atan(x) / angle,
                     "sqrt" => x.sqrt(),
                     "abs" => x.abs(),
-                    "exp" => x.exp(),
-                    "log" => x.ln(),
-                    "log10" => x.log10(),
-                    "sinh" => x.sinh(),
-                    "cosh" => x.cosh(),
-                    "tanh" => x.tanh(),
+                    "exp" => Scalar::exp(x),
+                    "log" => Scalar::ln(x),
+                    "log10" => Scalar::log10(x),
+                    "sinh" => Scalar::sinh(x),
+                    "cosh" => Scalar::cosh(x),
+                    "tanh" => Scalar::tanh(x),
                     "int" | "aint" => x.trunc(),
                     "nint" | "anint" => x.round(),
                     "floor" => x.floor(),
@@ -323,7 +324,7 @@ impl Database {
             }
             "loc_cylindrical" => {
                 let Vec3([r, angle, z]) = point(0)?;
-                let (s, c) = (angle * self.units.angle()).sin_cos();
+                let (s, c) = Scalar::sin_cos(angle * self.units.angle());
                 [r * c, r * s, z].into()
             }
             "ori_relative_to" => {

@@ -481,10 +481,10 @@ impl<'a> Interpreter<'a> {
                         None => self.refuse_word(&text, "a coordinate_system_type", value.span),
                     }
                 }
-                ("defaults units", kind @ ("length" | "mass" | "force" | "time" | "angle")) => {
-                    if !self.db.units.set(kind, &text) {
-                        self.refuse_word(&text, &format!("a unit of {kind}"), value.span);
-                    }
+                ("defaults units", kind @ ("length" | "mass" | "force" | "time" | "angle"))
+                    if !self.db.units.set(kind, &text) =>
+                {
+                    self.refuse_word(&text, &format!("a unit of {kind}"), value.span);
                 }
                 _ => {}
             }

@@ -5,6 +5,7 @@
 //! ```
 
 use super::database::{Database, Pose};
+use crate::scalar::Scalar;
 use crate::space::{Mat3, Vec3};
 
 /// Mass, centre, and inertia about the centre; in the axes of a frame.
@@ -151,7 +152,7 @@ fn revolved(profile: &[[f64; 2]]) -> Mass {
 /// Returns a regular polygon.
 fn regular(sides: f64, radius: f64) -> Vec<[f64; 2]> {
     let corner = |k: usize| {
-        let (s, c) = (std::f64::consts::TAU * k as f64 / sides).sin_cos();
+        let (s, c) = Scalar::sin_cos(std::f64::consts::TAU * k as f64 / sides);
         [radius * c, radius * s]
     };
     (0..sides as usize).map(corner).collect()
@@ -161,7 +162,7 @@ fn regular(sides: f64, radius: f64) -> Vec<[f64; 2]> {
 fn link_outline(length: f64, width: f64) -> Vec<[f64; 2]> {
     let end = |k: usize, from: f64, x: f64| {
         let angle = (from + 18.0 * k as f64) * super::units::DEGREE;
-        let (s, c) = angle.sin_cos();
+        let (s, c) = Scalar::sin_cos(angle);
         [x + width / 2.0 * c, width / 2.0 * s]
     };
     let first = (0..=10).map(|k| end(k, -90.0, length));
@@ -185,15 +186,15 @@ fn rounded(corners: &[[f64; 2]], radius: f64) -> Vec<[f64; 2]> {
     let outward = |k: usize| {
         let (p, q) = (corners[k % n], corners[(k + 1) % n]);
         let (x, y) = (q[0] - p[0], q[1] - p[1]);
-        let length = x.hypot(y);
+        let length = (x * x + y * y).sqrt();
         [y / length, -x / length]
     };
     let mut all = Vec::new();
     for (k, corner) in corners.iter().enumerate() {
         let (a, b) = (outward(k + n - 1), outward(k));
         let cosine = a[0] * b[0] + a[1] * b[1];
-        let turn = (a[0] * b[1] - a[1] * b[0]).atan2(cosine);
-        let begin = a[1].atan2(a[0]);
+        let turn = Scalar::atan2(a[0] * b[1] - a[1] * b[0], cosine);
+        let begin = Scalar::atan2(a[1], a[0]);
         let (center, begin) = match turn < 0.0 {
             false => (*corner, begin),
             true => {
@@ -206,7 +207,7 @@ fn rounded(corners: &[[f64; 2]], radius: f64) -> Vec<[f64; 2]> {
             }
         };
         for step in 0..=CHORDS {
-            let (s, c) = (begin + turn * f64::from(step) / f64::from(CHORDS)).sin_cos();
+            let (s, c) = Scalar::sin_cos(begin + turn * f64::from(step) / f64::from(CHORDS));
             all.push([center[0] + radius * c, center[1] + radius * s]);
         }
     }
@@ -349,7 +350,7 @@ impl Database {
             }
             "revolution" => {
                 let points = self.profile(k).map_err(|why| not(&why))?;
-                let around = |p: &Vec3<f64>| [p.0[0].hypot(p.0[1]), p.0[2]];
+                let around = |p: &Vec3<f64>| [(p.0[0] * p.0[0] + p.0[1] * p.0[1]).sqrt(), p.0[2]];
                 let profile: Vec<[f64; 2]> = points.iter().map(around).collect();
                 revolved(&profile).moved(&at("reference_marker")?)
             }

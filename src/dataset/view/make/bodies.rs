@@ -7,6 +7,7 @@ use crate::dataset::view::mass::Mass;
 use crate::dataset::view::term::Term;
 use crate::dataset::view::{PART, POINT_MASS};
 use crate::diagnostic::{Diagnostic, Severity};
+use crate::scalar::Scalar;
 use crate::space::Mat3;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -402,7 +403,7 @@ impl Maker<'_> {
         };
         let sides = self.db.number(first, "side_count_for_body").unwrap_or(20.0);
         let turn = std::f64::consts::TAU;
-        let less = 100.0 * (1.0 - sides / turn * (turn / sides).sin());
+        let less = 100.0 * (1.0 - sides / turn * Scalar::sin(turn / sides));
         let others = match odd.len() - 1 {
             0 => String::new(),
             n => format!(", and so are {n} more"),

@@ -3,6 +3,7 @@
 use super::{Draft, Maker, Want};
 use crate::dataset::view::database::Reference;
 use crate::diagnostic::{Cause, Diagnostic};
+use crate::scalar::Scalar;
 use crate::space::Vec3;
 
 impl Maker<'_> {
@@ -232,7 +233,7 @@ impl Maker<'_> {
         let local = j.inverse().compose(&i);
         let x = local.rotation.column(0).0;
         Some(match is_angle {
-            true => x[1].atan2(x[0]) / self.db.units.angle(),
+            true => Scalar::atan2(x[1], x[0]) / self.db.units.angle(),
             false => local.position.0[2],
         })
     }

@@ -6,6 +6,7 @@ use super::Maker;
 use crate::dataset::view::database::{Attribute, Datum, Item};
 use crate::dataset::view::term::Term;
 use crate::diagnostic::{Cause, Diagnostic};
+use crate::scalar::Scalar;
 use std::rc::Rc;
 
 /// A function over the line between the markers of a spring.
@@ -186,7 +187,7 @@ impl Maker<'_> {
                 Line {
                     displacement: format!("az({i},{j})"),
                     rate: format!("wz({i},{j},{j})"),
-                    free: self.free_displacement(k, x[1].atan2(x[0]), unit),
+                    free: self.free_displacement(k, Scalar::atan2(x[1], x[0]), unit),
                     unit,
                 }
             }

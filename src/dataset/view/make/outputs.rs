@@ -216,30 +216,31 @@ impl Maker<'_> {
 
     /// What View writes into every dataset, and what the file adds or takes away.
     fn result_settings(&mut self, keyword: &str) {
-        let (kind, usual, on, off): (&str, &[&str], &[(&str, &str)], &[(&str, &str)]) =
-            match keyword {
-                "RESULTS" => (
-                    "output_control set results",
-                    &["XRF"],
-                    &[("formatted", "FORMATTED")],
-                    &[
-                        ("displacements", "NODISPLACEMENTS"),
-                        ("velocities", "NOVELOCITIES"),
-                        ("accelerations", "NOACCELERATIONS"),
-                        ("reaction_forces", "NOREACTIONFORCES"),
-                        ("applied_forces", "NOAPPLIEDFORCES"),
-                        ("system_elements", "NOSYSTEMELEMENTS"),
-                        ("floating_markers", "NOFLOATINGMARKERS"),
-                        ("request", "NOREQUESTS"),
-                    ],
-                ),
-                _ => (
-                    "output_control set output",
-                    &["REQSAVE", "GRSAVE"],
-                    &[("ypr", "YPR")],
-                    &[("separator", "NOSEPARATOR")],
-                ),
-            };
+        type Words = &'static [&'static str];
+        type Pairs = &'static [(&'static str, &'static str)];
+        let (kind, usual, on, off): (&str, Words, Pairs, Pairs) = match keyword {
+            "RESULTS" => (
+                "output_control set results",
+                &["XRF"],
+                &[("formatted", "FORMATTED")],
+                &[
+                    ("displacements", "NODISPLACEMENTS"),
+                    ("velocities", "NOVELOCITIES"),
+                    ("accelerations", "NOACCELERATIONS"),
+                    ("reaction_forces", "NOREACTIONFORCES"),
+                    ("applied_forces", "NOAPPLIEDFORCES"),
+                    ("system_elements", "NOSYSTEMELEMENTS"),
+                    ("floating_markers", "NOFLOATINGMARKERS"),
+                    ("request", "NOREQUESTS"),
+                ],
+            ),
+            _ => (
+                "output_control set output",
+                &["REQSAVE", "GRSAVE"],
+                &[("ypr", "YPR")],
+                &[("separator", "NOSEPARATOR")],
+            ),
+        };
         let object = self.db.of_kind(kind).next();
         let head = object.map_or(Span::default(), |k| self.db.objects[k].head);
         let Some(mut draft) = self.setting(keyword, head) else {
