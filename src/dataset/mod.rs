@@ -168,9 +168,13 @@ pub fn read_source(source: Source) -> Reading {
 /// instead of those of the file, by their full names (`.model.DV_1`). Whatever depends on them is
 /// computed anew.
 pub fn read_with(source: Source, variables: &BTreeMap<String, f64>) -> Reading {
-    if view::is_view(source.file.as_deref()) {
-        return view::read(source, variables);
+    match view::is_view(source.file.as_deref()) {
+        true => view::read(source, variables),
+        false => read_dataset(source),
     }
+}
+
+fn read_dataset(source: Source) -> Reading {
     let mut reading = Reading::default();
     let out = &mut reading.diagnostics;
     let syntax = syntax::dataset(&source, out);

@@ -613,16 +613,6 @@ backwards, and never zero. There are at most ten million samples.
     2:0:0.01          write 2:0:-0.01",
     },
     Code {
-        name: "bad_definition",
-        summary: "a name that cannot be defined with :let",
-        explanation: "\
-A name begins with a letter and goes on with letters, digits and underscores. Names of the language cannot be given another
-meaning. What is defined stands for its whole expression: after `:let w = 1+1`, w*3 is 6.
-
-    :let 2x = 1       write :let x2 = 1
-    :let sin = 1      SIN is a name of the language",
-    },
-    Code {
         name: "motion_reads",
         summary: "the function of a MOTION reads something that is no function of time",
         explanation: "\

@@ -75,7 +75,7 @@ const VERBS: &[&str] = &[
     "rename",
 ];
 
-/// What the words of a command mean.
+/// The meaning of the words of a command.
 #[derive(Debug)]
 pub(super) enum Meaning {
     /// a row of the table, and the verb

@@ -89,7 +89,7 @@ pub(super) struct Object {
 /// Position and orientation in ground.
 pub(super) type Pose = crate::space::Frame<f64>;
 
-/// What three numbers of a location are.
+/// The meaning of three numbers of a location.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Coordinates {
     #[default]

@@ -3,7 +3,7 @@
 use super::database::{Attribute, Database, Datum, Fixed, Item, Reference};
 use super::frames::Reading;
 use super::term::{Binary, Shared, Term};
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Diagnostic, Span, counted};
 use crate::scalar::Scalar;
 use std::rc::Rc;
 
@@ -42,7 +42,7 @@ impl Database {
                 match of(list)? {
                     Datum::List(all) if index >= 1.0 => {
                         let found = all.get(index as usize - 1).cloned();
-                        found.ok_or_else(|| format!("it has {} elements", all.len()))?
+                        found.ok_or_else(|| format!("it has {}", counted(all.len(), "element")))?
                     }
                     only if index == 1.0 => only,
                     _ => return Err("it has no such element".into()),
@@ -201,7 +201,10 @@ impl Database {
                 let number = text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
                 number.ok_or_else(|| format!("`{text}` is no number"))
             }
-            Datum::List(all) => Err(format!("{} numbers stand where one is wanted", all.len())),
+            Datum::List(all) => Err(format!(
+                "{} stand where one is wanted",
+                counted(all.len(), "number")
+            )),
             Datum::Nothing => Err("(NONE) is no number".into()),
         }
     }
@@ -301,9 +304,8 @@ impl Database {
         match (&a, &b) {
             (Datum::List(all), Datum::List(others)) => {
                 if all.len() != others.len() {
-                    let what = "arrays of {} and {} elements do not go together";
-                    let what = what.replacen("{}", &all.len().to_string(), 1);
-                    return Err(what.replacen("{}", &others.len().to_string(), 1));
+                    let (one, other) = (counted(all.len(), "element"), others.len());
+                    return Err(format!("arrays of {one} and of {other} do not go together"));
                 }
                 let each = all.iter().zip(others);
                 let each = each.map(|(a, b)| self.combined(operator, a, b));

@@ -10,6 +10,7 @@
 
 use super::database::{Attribute, Coordinates, Database, Datum, Pose, Reference, Sequence};
 use super::evaluate::Trouble;
+use crate::diagnostic::counted;
 use crate::scalar::Scalar;
 use crate::space::{Mat3, Vec3, rotation};
 
@@ -69,7 +70,8 @@ pub(super) fn cleaned(all: [f64; 3], size: f64) -> [f64; 3] {
 }
 
 fn three(all: &[f64], what: &str) -> Result<[f64; 3], Trouble> {
-    <[f64; 3]>::try_from(all).map_err(|_| format!("{what} has {} numbers, not 3", all.len()))
+    <[f64; 3]>::try_from(all)
+        .map_err(|_| format!("{what} has {}, not 3", counted(all.len(), "number")))
 }
 
 impl Database {

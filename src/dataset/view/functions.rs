@@ -6,6 +6,7 @@ use super::database::{Database, Datum, Pose};
 use super::evaluate::Trouble;
 use super::frames::{Reading, angles_313, cleaned, turned};
 use super::term::Term;
+use crate::diagnostic::counted;
 use crate::scalar::Scalar;
 use crate::space::{Mat3, Vec3};
 
@@ -101,11 +102,23 @@ fn aligned(a: usize, b: usize, against: bool) -> Mat3<f64> {
     Mat3::from_columns(x, y, z)
 }
 
+/// Says why points give no direction.
+fn no_way() -> Trouble {
+    "the points coincide or lie on a line".into()
+}
+
+fn unknown(name: &str) -> Trouble {
+    format!("the function {} is not known here", name.to_uppercase())
+}
+
 impl Database {
     /// Returns the value of a function.
     pub fn call(&self, name: &str, terms: &[Term], within: &Reading) -> Result<Datum, Trouble> {
-        if name.starts_with("loc_") || name.starts_with("ori_") {
-            return self.place(name, terms, within);
+        if name.starts_with("loc_") {
+            return self.location_function(name, terms, within);
+        }
+        if name.starts_with("ori_") {
+            return self.orientation_function(name, terms, within);
         }
         match name {
             "eval" if terms.len() == 1 => return self.evaluate(&terms[0], within),
@@ -156,7 +169,7 @@ impl Database {
         let needs = |n: usize| {
             let is = all.len() == n;
             is.then_some(())
-                .ok_or_else(|| format!("{name} takes {n} numbers, not {}", all.len()))
+                .ok_or_else(|| format!("{name} takes {}, not {}", counted(n, "number"), all.len()))
         };
         let value = match name {
             "min" => all.iter().copied().fold(f64::INFINITY, f64::min),
@@ -197,12 +210,7 @@ impl Database {
                     "floor" => x.floor(),
                     "ceil" => x.ceil(),
                     "real" | "dble" | "norm" => x,
-                    _ => {
-                        return Err(format!(
-                            "the function {} is not known here",
-                            name.to_uppercase()
-                        ));
-                    }
+                    _ => return Err(unknown(name)),
                 }
             }
         };
@@ -263,31 +271,48 @@ impl Database {
         }))
     }
 
-    fn place(&self, name: &str, terms: &[Term], within: &Reading) -> Result<Datum, Trouble> {
+    /// Returns the point that an argument is.
+    fn point(&self, terms: &[Term], k: usize, within: &Reading) -> Result<Vec3<f64>, Trouble> {
+        let numbers = self.as_numbers(&self.evaluate(self.term(terms, k)?, within)?)?;
+        let three = <[f64; 3]>::try_from(numbers);
+        three
+            .map(Vec3)
+            .map_err(|all| format!("a location has 3 numbers, not {}", all.len()))
+    }
+
+    /// Returns the axis that an argument names.
+    fn axis_argument(&self, terms: &[Term], k: usize, within: &Reading) -> Result<usize, Trouble> {
+        let text = self.text_of(terms, k, within)?;
+        let found = text.chars().next().and_then(axis);
+        found.ok_or_else(|| format!("`{text}` is no axis"))
+    }
+
+    /// Returns the two axes that an argument names.
+    fn axes(
+        &self,
+        terms: &[Term],
+        k: usize,
+        within: &Reading,
+    ) -> Result<(usize, usize, bool), Trouble> {
+        let text = self.text_of(terms, k, within)?;
+        pair(&text).ok_or_else(|| format!("`{text}` names no two axes"))
+    }
+
+    /// Returns a location.
+    fn location_function(
+        &self,
+        name: &str,
+        terms: &[Term],
+        within: &Reading,
+    ) -> Result<Datum, Trouble> {
         let frame = |k| self.frame_argument(terms, k, within);
-        let point = |k: usize| -> Result<Vec3<f64>, Trouble> {
-            let numbers = self.as_numbers(&self.evaluate(self.term(terms, k)?, within)?)?;
-            let three = <[f64; 3]>::try_from(numbers);
-            three
-                .map(Vec3)
-                .map_err(|all| format!("a location has 3 numbers, not {}", all.len()))
-        };
+        let point = |k| self.point(terms, k, within);
+        let number = |k: usize| self.as_number(&self.evaluate(self.term(terms, k)?, within)?);
         let own = self.reading_pose(within)?;
         let here = |p: Vec3<f64>| {
             let q = own.rotation.apply_transposed(p - own.position);
             Datum::from(cleaned(q.0, p.norm().max(own.position.norm())))
         };
-        let turned_here = |R: Mat3<f64>| {
-            let angles = angles_313(own.rotation.transpose() * R);
-            Datum::from(cleaned(angles, 1.0).map(|x| x / self.units.angle()))
-        };
-        let number = |k: usize| self.as_number(&self.evaluate(self.term(terms, k)?, within)?);
-        let text = |k: usize| self.text_of(terms, k, within);
-        let axes = |k: usize| -> Result<(usize, usize, bool), Trouble> {
-            let text = text(k)?;
-            pair(&text).ok_or_else(|| format!("`{text}` names no two axes"))
-        };
-        let no_way = || -> Trouble { "the points coincide or lie on a line".into() };
         Ok(match name {
             "loc_relative_to" => here(frame(1)?.point(point(0)?)),
             "loc_global" => frame(1)?.point(point(0)?).0.into(),
@@ -309,14 +334,12 @@ impl Database {
                 }
             }
             "loc_on_axis" => {
-                let (at, text) = (frame(0)?, text(2)?);
-                let k = text.chars().next().and_then(axis);
-                let k = k.ok_or_else(|| format!("`{text}` is no axis"))?;
+                let (at, k) = (frame(0)?, self.axis_argument(terms, 2, within)?);
                 here(at.position + at.rotation.column(k).times(number(1)?))
             }
             "loc_mirror" => {
                 let mirror = frame(1)?;
-                let (a, b, _) = axes(2)?;
+                let (a, b, _) = self.axes(terms, 2, within)?;
                 let k = 3 - (a + b).min(3);
                 let mut local = mirror.inverse().point(own.point(point(0)?));
                 local.0[k.min(2)] *= -1.0;
@@ -327,6 +350,26 @@ impl Database {
                 let (s, c) = Scalar::sin_cos(angle * self.units.angle());
                 [r * c, r * s, z].into()
             }
+            _ => return Err(unknown(name)),
+        })
+    }
+
+    /// Returns the angles of an orientation.
+    fn orientation_function(
+        &self,
+        name: &str,
+        terms: &[Term],
+        within: &Reading,
+    ) -> Result<Datum, Trouble> {
+        let frame = |k| self.frame_argument(terms, k, within);
+        let point = |k| self.point(terms, k, within);
+        let axes = |k| self.axes(terms, k, within);
+        let own = self.reading_pose(within)?;
+        let turned_here = |R: Mat3<f64>| {
+            let angles = angles_313(own.rotation.transpose() * R);
+            Datum::from(cleaned(angles, 1.0).map(|x| x / self.units.angle()))
+        };
+        Ok(match name {
             "ori_relative_to" => {
                 let angles = point(0)?.0.map(|x| x * self.units.angle());
                 turned_here(
@@ -344,9 +387,7 @@ impl Database {
             }
             "ori_along_axis" | "ori_one_axis" => {
                 let (from, to) = (frame(0)?.position, frame(1)?.position);
-                let text = text(2)?;
-                let k = text.chars().next().and_then(axis);
-                let k = k.ok_or_else(|| format!("`{text}` is no axis"))?;
+                let k = self.axis_argument(terms, 2, within)?;
                 turned_here(along(to - from, k).ok_or_else(no_way)?)
             }
             "ori_in_plane" => {
@@ -365,12 +406,7 @@ impl Database {
                 let angles = angles_313(R.ok_or_else(no_way)?);
                 Datum::from(angles.map(|x| x / self.units.angle()))
             }
-            _ => {
-                return Err(format!(
-                    "the function {} is not known here",
-                    name.to_uppercase()
-                ));
-            }
+            _ => return Err(unknown(name)),
         })
     }
 }

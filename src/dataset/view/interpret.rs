@@ -25,7 +25,7 @@ pub(super) struct Simulation {
     pub span: Span,
 }
 
-/// What goes on behind a command.
+/// The way on behind a command.
 #[derive(Clone, Copy, PartialEq)]
 enum Flow {
     Next,

@@ -1,6 +1,6 @@
 //! Simulations of a command file as commands of the solver.
 //!
-//! What counts is the last that the file asks for: commands at its end, else the script `Last_Sim`
+//! The last that the file asks for counts: commands at its end, else the script `Last_Sim`
 //! that View keeps of what ran last, else the last script.
 
 use super::commands::{self, Meaning};
@@ -163,7 +163,7 @@ fn one(
                 };
                 out.push(source.locate(d, simulation.span));
             }
-            lines.push(format!("SIMULATE/{kind}, {span}, {rows}"));
+            lines.push(["SIMULATE/", kind, ", ", &span, ", ", &rows].concat());
         }
         _ => {}
     }

@@ -5,6 +5,16 @@ use super::Code;
 /// Codes of runs: reasons to stop, then warnings.
 pub static RUN_CODES: &[Code] = &[
     Code {
+        name: "bad_definition",
+        summary: "a name that cannot be defined with :let",
+        explanation: "\
+A name begins with a letter and goes on with letters, digits and underscores. Names of the language cannot be given another
+meaning. What is defined stands for its whole expression: after `:let w = 1+1`, w*3 is 6.
+
+    :let 2x = 1       write :let x2 = 1
+    :let sin = 1      SIN is a name of the language",
+    },
+    Code {
         name: "nothing_turns",
         summary: "an angle is asked about an axis about which the joint of the two parts does not turn (a warning)",
         explanation: "\

@@ -2,7 +2,7 @@
 
 use super::Code;
 
-/// What is said of command files of Adams View, in the order in which they are read.
+/// The codes of command files of Adams View, in the order in which they are read.
 pub static VIEW_CODES: &[Code] = &[
     Code {
         name: "view_syntax",

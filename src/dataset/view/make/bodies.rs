@@ -456,6 +456,17 @@ impl Maker<'_> {
         self.push(draft);
     }
 
+    /// Gives a box its corner and its sides.
+    fn block(&self, draft: &mut Draft, k: usize) {
+        draft.flag("BOX");
+        self.element(draft, "corner_marker", "CORNER");
+        let sides = self.db.numbers(k, "diag_corner_coords").unwrap_or_default();
+        let span = self.db.span(k, "diag_corner_coords");
+        for (side, keyword) in sides.iter().zip(["X", "Y", "Z"]) {
+            draft.give(keyword, Want::Numbers(vec![*side]), span);
+        }
+    }
+
     fn make_shape(&mut self, k: usize) {
         let Some(mut draft) = self.draft(k) else {
             return;
@@ -463,16 +474,7 @@ impl Maker<'_> {
         let kind = self.db.objects[k].kind;
         let pairs: &[(&str, &str)] = match kind {
             "geometry shape block" => {
-                draft.flag("BOX");
-                self.element(&mut draft, "corner_marker", "CORNER");
-                let sides = self.db.numbers(k, "diag_corner_coords").unwrap_or_default();
-                for (side, keyword) in sides.iter().zip(["X", "Y", "Z"]) {
-                    draft.give(
-                        keyword,
-                        Want::Numbers(vec![*side]),
-                        self.db.span(k, "diag_corner_coords"),
-                    );
-                }
+                self.block(&mut draft, k);
                 &[]
             }
             "geometry shape cylinder" => {

@@ -202,7 +202,7 @@ impl Maker<'_> {
         let both = match (displacement, velocity) {
             (Some(x), Some(v)) => vec![v, x],
             (Some(x), None) => vec![x],
-            // a velocity alone goes with a displacement that is as drawn, which a dataset cannot say
+            // a velocity alone goes with the displacement as drawn
             (None, Some(v)) => {
                 let drawn = self.drawn(k, is_angle).unwrap_or(0.0);
                 vec![v, drawn]

@@ -1,7 +1,7 @@
 //! Variables, splines, matrices, arrays, curves, equations, plants.
 
 use super::{Draft, Maker, Want};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, counted};
 use crate::model::Formula;
 
 impl Maker<'_> {
@@ -76,7 +76,11 @@ impl Maker<'_> {
         let n = y.len() / z.len();
         if n == 0 || y.len() % z.len() != 0 {
             draft.record.mistaken = true;
-            let what = format!("{} values do not go with {} of z", y.len(), z.len());
+            let what = format!(
+                "{} do not go with {} of z",
+                counted(y.len(), "value"),
+                z.len()
+            );
             return self.say(k, "y", Diagnostic::error("view_expression", what));
         }
         for (row, z) in y.chunks_exact(n).zip(z) {

@@ -168,9 +168,9 @@ impl Maker<'_> {
             }));
         }
         if let Some(load) = of.strip_prefix("element_") {
-            let name = match id.kind.keyword() {
-                "SPRINGDAMPER" => "SPDP".to_owned(),
-                keyword => keyword.to_owned(),
+            let name = match id.kind {
+                ElementKind::SpringDamper => "SPDP",
+                kind => kind.keyword(),
             };
             let place = match (load, component) {
                 ("force", 0) => 1,

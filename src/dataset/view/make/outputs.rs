@@ -214,7 +214,7 @@ impl Maker<'_> {
         }
     }
 
-    /// What View writes into every dataset, and what the file adds or takes away.
+    /// Makes what View writes into every dataset, with what the file adds or takes away.
     fn result_settings(&mut self, keyword: &str) {
         type Words = &'static [&'static str];
         type Pairs = &'static [(&'static str, &'static str)];
