@@ -39,6 +39,7 @@ pub struct Args {
     #[arg(long = "sequence", value_name = "NAME")]
     sequences: Vec<String>,
     /// Value of a design variable of a command file of Adams View, as .model.DV_1=2.5 (repeatable)
+    /// [default: those of the file]
     #[arg(long, value_name = "NAME=VALUE", value_parser = run::variable)]
     set: Vec<(String, f64)>,
     #[command(flatten)]

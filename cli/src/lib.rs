@@ -292,6 +292,10 @@ fn with_one_lack_of_routines(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
             continue;
         };
         let name = d.subject().unwrap_or_default().to_string();
+        let name = match d.line {
+            0 => name,
+            line => format!("{name} (line {line})"),
+        };
         match others.iter_mut().find(|(first, _)| *first == k) {
             Some((_, names)) => names.push(name),
             None => others.push((k, vec![name])),

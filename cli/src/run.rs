@@ -54,7 +54,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     loads: Vec<String>,
     /// Value of a design variable of a command file of Adams View, as .model.DV_1=2.5 (repeatable);
-    /// what depends on it is computed anew
+    /// what depends on it is computed anew [default: those of the file]
     #[arg(long, value_name = "NAME=VALUE", value_parser = variable)]
     set: Vec<(String, f64)>,
     /// Folder that results are written to, or - for the table alone on standard output, as .csv or

@@ -110,7 +110,7 @@ fn alike(a: &str, b: &str) -> bool {
     words == others
         && numbers.len() == other_numbers.len()
         && numbers.iter().zip(&other_numbers).all(near)
-        && rotation(&turn).angle_to(&rotation(&other_turn)) < TOLERANCE
+        && (rotation(&turn).matrix() - rotation(&other_turn).matrix()).amax() < TOLERANCE
 }
 
 /// View writes ten digits; those of angles are of degrees.
@@ -144,8 +144,17 @@ fn differences(adams: &Model, ours: &Model) -> (usize, Vec<String>) {
             continue;
         }
         compared += 1;
-        let other = statements.get(&id);
-        if !other.is_some_and(|other| alike(&text, other)) {
+        // what a user-defined element is made of has no number in a command file
+        let is_inner = name.contains('.');
+        let named = ours.find_of(&[id.kind], &name).ok().filter(|_| is_inner);
+        let other = statements.get(&named.unwrap_or(id));
+        let headless = |text: &str| text.split_once('\n').map(|(_, rest)| rest.to_owned());
+        let (own, other_text) = match is_inner {
+            true => (headless(&text), other.and_then(|other| headless(other))),
+            false => (Some(text.clone()), other.cloned()),
+        };
+        let is_alike = own.zip(other_text).is_some_and(|(a, b)| alike(&a, &b));
+        if !is_alike {
             wrong.push(format!(
                 "{text}\n  is {}",
                 other.map_or("not there", String::as_str)

@@ -914,11 +914,11 @@ fn what_a_model_cannot_do_is_shown_at_its_statement() {
     ] {
         let done = cognate(&command);
         assert_eq!(done.code, 4, "{command:?}: {}", done.err);
+        // one sentence with all places that want a routine
         for place in [
-            "refused.adm:8:1",
             "refused.adm:9:1",
-            "8 | GSE/1",
             "9 | SFORCE/1",
+            "likewise GSE/1 FUNCTION (line 8)",
         ] {
             assert!(
                 done.err.contains(place),

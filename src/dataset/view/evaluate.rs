@@ -71,7 +71,9 @@ impl Database {
             return Ok(Datum::Object(k));
         }
         if let Some((object, field)) = name.rsplit_once('.')
-            && let Some(k) = self.find(object)
+            && let Some(k) = self
+                .find(object)
+                .filter(|k| self.objects[*k].kind != "model")
         {
             return self.field(k, field);
         }
