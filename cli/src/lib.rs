@@ -238,9 +238,9 @@ impl Failure {
     /// Creates a failure from mistakes in a model, each at the statement of its element. Routines
     /// that nobody has are one mistake, however many ask for them.
     pub fn in_model(dataset: &Dataset, diagnostics: impl Into<Vec<Diagnostic>>) -> Self {
-        let diagnostics = with_one_lack_of_routines(diagnostics.into());
-        let located = diagnostics.into_iter().map(|d| dataset.locate(d));
-        Self::in_files(Exit::Model, located.collect())
+        let located = diagnostics.into().into_iter().map(|d| dataset.locate(d));
+        let diagnostics = with_one_lack_of_routines(located.collect());
+        Self::in_files(Exit::Model, diagnostics)
     }
     /// Creates a failure from a mistake in an argument of the command line, which is shown with its
     /// place.
