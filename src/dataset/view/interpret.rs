@@ -14,6 +14,8 @@ use std::rc::Rc;
 
 /// Commands that a file may have obeyed, those of loops each time.
 const MOST_COMMANDS: usize = 1_000_000;
+/// Mistakes after which a file is read no further: a loop makes the same one each time.
+const MOST_MISTAKES: usize = 500;
 /// Branches and loops within one another.
 const DEEPEST_BLOCK: usize = 64;
 
@@ -146,6 +148,10 @@ impl<'a> Interpreter<'a> {
                         self.commands[at].span,
                     );
                 }
+                flow = Flow::Return;
+                break;
+            }
+            if self.db.said.borrow().len() > MOST_MISTAKES {
                 flow = Flow::Return;
                 break;
             }
