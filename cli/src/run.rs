@@ -434,7 +434,10 @@ fn routines(args: &Args, session: &mut Session, dataset: &Dataset) -> Result<Mis
         .routines
         .compute(session, dataset, args.unsolved.zero_user);
     #[cfg(not(all(unix, feature = "routines")))]
-    Ok(Mistake::default())
+    {
+        let _ = (args, session, dataset);
+        Ok(Mistake::default())
+    }
 }
 
 /// The model and the commands of a run.
