@@ -34,6 +34,7 @@ impl Model {
             dataset,
             mut model,
             diagnostics,
+            ..
         } = reading;
         let is_error = |d: &Diagnostic| d.severity == Severity::Error;
         let (wrong, doubts): (Vec<_>, Vec<_>) = diagnostics.into_iter().partition(is_error);
