@@ -1,7 +1,7 @@
 //! `cognate animate`: a run as a page that moves, as a film, or as an animated `.glb` file.
 
 use super::draw::From;
-use super::moved::{Dimensions, Moved, Source, has_ending, pictured};
+use super::moved::{Dimensions, Moved, Source, has_ending, is_dataset, pictured};
 use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, interrupt, piped, recorded, remark, run};
 #[cfg(feature = "gif")]
@@ -77,7 +77,7 @@ pub fn run(args: &Args) -> Outcome {
         return Err(Failure::usage(what));
     }
     args.writing.check_beside(&args.source.file, &args.out)?;
-    let is_solved = run::has_commands(&args.source.file) || has_ending(&args.source.file, "adm");
+    let is_solved = run::has_commands(&args.source.file) || is_dataset(&args.source.file);
     let Moved {
         model,
         run,
@@ -132,7 +132,7 @@ const FILM_WIDTH: u32 = 480;
 /// Returns why nothing moves, and what helps.
 fn still(args: &Args) -> String {
     let file = args.source.file.display();
-    let is_dataset = has_ending(&args.source.file, "adm");
+    let is_dataset = is_dataset(&args.source.file);
     if is_dataset && args.source.span.end.is_none() {
         return format!(
             "nothing moves: a dataset without command file is assembled and stands still; \

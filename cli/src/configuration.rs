@@ -1,7 +1,7 @@
 //! `cognate configuration`: the configuration of a run at some time as a dataset that begins there.
 
 use super::arguments::{IntegrationArgs, KindName, SpanArgs, UnsolvedArgs};
-use super::moved::has_ending;
+use super::moved::is_dataset;
 use super::recorded::{model_file, record_of};
 use super::run::{self, Single};
 use super::setup::Asked;
@@ -67,7 +67,7 @@ pub struct Args {
 /// When the model cannot be solved up to that time, or a file cannot be written.
 pub fn run(args: &Args) -> Outcome {
     interrupt::install();
-    let is_model = has_ending(&args.file, "adm") || run::has_commands(&args.file);
+    let is_model = is_dataset(&args.file) || run::has_commands(&args.file);
     let (file, dataset) = match (is_model, &args.model) {
         (true, model) => (args.file.clone(), model.as_deref()),
         (false, model) => (model_file(&args.file, model.as_deref())?, None),

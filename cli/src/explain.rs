@@ -141,8 +141,8 @@ pub fn explained(what: &str) -> Result<String, Diagnostic> {
 }
 
 fn is_model(what: &str) -> bool {
-    let ending = Path::new(what).extension();
-    ending.is_some_and(|e| e.eq_ignore_ascii_case("adm") || e.eq_ignore_ascii_case("acf"))
+    let file = Path::new(what);
+    super::moved::is_dataset(file) || super::moved::has_ending(file, "acf")
 }
 
 /// Returns the outline of a model as JSON.

@@ -87,7 +87,7 @@ impl Source {
     /// # Errors
     /// When a file has mistakes, or the model cannot work.
     pub fn get(&self) -> Result<Moved, Failure> {
-        let is_dataset = has_ending(&self.file, "adm");
+        let is_dataset = is_dataset(&self.file);
         if !is_dataset {
             self.span.refuse_beside(&self.file)?;
         }
@@ -159,9 +159,10 @@ impl Source {
     /// # Errors
     /// When there is none.
     fn model_of(&self, run: &Run) -> Result<(PathBuf, Model), Failure> {
-        let named = Path::new(&run.record.model).with_extension("adm");
-        let beside = self.file.with_extension("adm");
-        let found = [beside, named].into_iter().find(|p| p.is_file());
+        let named = Path::new(&run.record.model);
+        let itself = || (is_dataset(named) && named.is_file()).then(|| named.to_owned());
+        let found = model_beside(&self.file).or_else(itself);
+        let found = found.or_else(|| model_beside(named));
         if let Some(dataset) = self.model.clone().or(found) {
             let model = run::read_with(&dataset, Asked::All)?.model;
             return Ok((dataset, model));
@@ -203,6 +204,20 @@ pub fn assembled(
         run: session.run,
         folders,
     })
+}
+
+/// Endings of files that are models: datasets, command files of Adams View, datasets of RecurDyn.
+const MODELS: [&str; 3] = ["adm", "cmd", "rmd"];
+
+/// Returns whether a file is a model without commands of the solver, by its name.
+pub fn is_dataset(file: &Path) -> bool {
+    MODELS.iter().any(|ending| has_ending(file, ending))
+}
+
+/// Returns the model that has the name of another file, if there is one.
+pub fn model_beside(file: &Path) -> Option<PathBuf> {
+    let all = MODELS.iter().map(|ending| file.with_extension(ending));
+    all.into_iter().find(|model| model.is_file())
 }
 
 /// Returns whether a file has an ending, in any case.

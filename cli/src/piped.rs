@@ -80,7 +80,7 @@ fn input(usual: &'static str) -> impl TypedValueParser<Value = PathBuf> {
 }
 
 /// Formats of models.
-const MODELS: [&str; 2] = ["adm", "acf"];
+const MODELS: [&str; 3] = ["adm", "acf", "cmd"];
 
 /// Reads the argument of a file to write: a file, or `-` for standard output in the usual format,
 /// which others may stand in for (`json:-`).

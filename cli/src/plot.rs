@@ -1,7 +1,7 @@
 //! `cognate plot`: columns of results as a picture, in the terminal or as a file.
 
 use super::grouped;
-use super::moved::has_ending;
+use super::moved::{has_ending, is_dataset};
 use super::recorded;
 use super::recorded::add_measures;
 use super::response::responses;
@@ -190,7 +190,7 @@ fn shown(args: &Args, sources: &[Source], names: &[String]) -> Result<Channels, 
 
 /// Returns whether a file is a model, whose functions are shown.
 fn is_model(file: &Path) -> bool {
-    has_ending(file, "adm") || has_ending(file, "acf")
+    is_dataset(file) || has_ending(file, "acf")
 }
 
 /// Returns the set-up of a model that is shown; `None`: results are shown.

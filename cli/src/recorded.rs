@@ -60,8 +60,7 @@ pub(super) fn model_file(results: &Path, given: Option<&Path>) -> Result<PathBuf
 
 /// Returns the dataset beside results that has their name.
 fn namesake(results: &Path) -> Option<PathBuf> {
-    let dataset = results.with_extension("adm");
-    dataset.is_file().then_some(dataset)
+    super::moved::model_beside(results)
 }
 
 /// Reads results, by their file or the name of their run; what is doubted about their file is said.

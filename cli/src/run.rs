@@ -537,8 +537,14 @@ pub(super) fn standing_with(args: &Single<'_>, asked: Asked<'_>) -> Result<Job, 
         // what a command file of Adams View asks for
         let script =
             Script::from_text(commands).map_err(|e| Failure::in_files(Exit::Input, e.into()))?;
-        steps = script.steps;
+        let what = commands.trim_end().replace('\n', "; ");
+        let what = format!("no --end is given: what the file asks for is run: {what}");
         remarks = script.diagnostics;
+        remarks.push(Diagnostic {
+            severity: Severity::Note,
+            ..Diagnostic::warning("view_script", what)
+        });
+        steps = script.steps;
     }
     Ok(Job {
         reading,

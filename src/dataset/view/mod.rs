@@ -37,7 +37,7 @@ mod units;
 use super::syntax::Source;
 use super::{Dataset, Reading};
 use crate::arrange::Arrange;
-use crate::diagnostic::{Cause, Diagnostic, Severity, Span};
+use crate::diagnostic::{Cause, Diagnostic, Span};
 use crate::model::Model;
 use database::Database;
 use interpret::Interpreter;
@@ -169,6 +169,5 @@ fn find_contradictions(reading: &mut Reading) {
         });
     }
     super::name_elements(&dataset.records, out);
-    out.arrange_by_key(|d| (d.severity != Severity::Error, d.line == 0, d.line, d.column));
     out.arrange_by_key(|d| (d.line == 0, d.line, d.column));
 }

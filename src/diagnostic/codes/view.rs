@@ -82,6 +82,15 @@ markers of joints do not meet so; they would if their numbers were in ground.
     defaults coordinate_system default_coordinate_system = .m.ground      above the markers",
     },
     Code {
+        name: "view_script",
+        summary: "the simulation that a command file of Adams View asks for",
+        explanation: "\
+Without --end a run does what the file asks for: the commands `simulation single_run` at its end, else the script `Last_Sim`, in
+which View keeps what ran last, else the last script. That may be an assembly or an equilibrium alone.
+
+    cognate run crank.cmd --end 2 --steps 200      another simulation",
+    },
+    Code {
         name: "view_no_model",
         summary: "a command file of Adams View that makes no model",
         explanation: "\

@@ -93,9 +93,9 @@ impl Maker<'_> {
     fn component(&self, k: usize) -> usize {
         let word = self.db.choice(k, "component").unwrap_or_default();
         match word.as_str() {
-            w if w.starts_with('x') || w.ends_with('1') => 1,
-            w if w.starts_with('y') || w.ends_with('2') => 2,
-            w if w.starts_with('z') || w.ends_with('3') => 3,
+            w if w.starts_with('x') || w.starts_with("angle_1") => 1,
+            w if w.starts_with('y') || w.starts_with("angle_2") => 2,
+            w if w.starts_with('z') || w.starts_with("angle_3") => 3,
             _ => 0,
         }
     }
