@@ -21,14 +21,12 @@ use made::Made;
 
 use super::syntax::{Item, Source, Syntax, TokenKind};
 use crate::diagnostic::{Diagnostic, Severity, Span, near_names};
-use crate::expr::measures::Measure;
 use crate::model::geometry::orientation;
 use crate::model::{
     Driven, ElementId, ElementKind, Joint, JointKind, Marker, MarkerOwner, Model, Orientation,
     Place,
 };
-use crate::physics::kinematic::kinematic;
-use crate::space::{Frame, MarkerState, Vec3};
+use crate::space::{Frame, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 
 mod chain;
@@ -416,13 +414,7 @@ fn next(last: Option<&u32>) -> u32 {
 
 /// Returns the 3-1-3 angles of a rotation.
 fn euler(rotation: crate::space::Mat3<f64>) -> Orientation {
-    let state = MarkerState {
-        R_GM: rotation,
-        ..MarkerState::ground()
-    };
-    let ground = MarkerState::ground();
-    let angle = |m| kinematic(m, &state, &ground, &ground, &ground).unwrap_or(0.0);
-    Orientation::Euler([Measure::Psi, Measure::Theta, Measure::Phi].map(angle))
+    Orientation::Euler(crate::space::rotation::to_313(&rotation))
 }
 
 /// Switches off joints and primitives between parts of a rigid body; refuses motions between them.

@@ -3,6 +3,8 @@
 
 use super::check::references::named;
 use super::{ById, ElementId, ElementKind, Family, Formula, Model, Part, Place};
+use crate::expr::ast::{Callee, Node};
+use crate::expr::measures::Measure;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// One element names another.
@@ -78,6 +80,39 @@ impl Model {
                 argument,
                 formula,
             }));
+        }
+        all
+    }
+
+    /// Returns every call of a measure in functions whose first three arguments are numbers: its
+    /// function, and these numbers, 0 for those that are left out.
+    pub(crate) fn measure_calls(&self) -> Vec<(Owned<'_>, Measure, [u32; 3])> {
+        let mut all = Vec::new();
+        for owned in self.formulas() {
+            let Formula::Expression { text, .. } = owned.formula else {
+                continue;
+            };
+            let Ok(ast) = text.ast() else {
+                continue;
+            };
+            for node in &ast.nodes {
+                let Node::Call {
+                    callee: Callee::Measure(measure),
+                    args,
+                } = node
+                else {
+                    continue;
+                };
+                // a marker that is not a number is none to be looked for
+                let number = |k: usize| match args.get(k).map(|&a| ast.node(a)) {
+                    None => Some(0),
+                    Some(Node::Number { literal, .. }) => Some(*literal as u32),
+                    Some(_) => None,
+                };
+                if let (Some(i), Some(j), Some(k)) = (number(0), number(1), number(2)) {
+                    all.push((owned.clone(), *measure, [i, j, k]));
+                }
+            }
         }
         all
     }

@@ -24,6 +24,28 @@ pub fn from_313<S: Scalar>(psi: S, theta: S, phi: S) -> Mat3<S> {
     about_axis(2, psi) * about_axis(0, theta) * about_axis(2, phi)
 }
 
+/// Returns the body-fixed 3-1-3 angles of a rotation, θ from 0 to π; where z and z' are one line
+/// within rounding, φ is 0.
+///
+/// ```text
+/// cos φ = eᵩ · x'    −sin φ = eᵩ · y'    with eᵩ = (cos ψ, sin ψ, 0), the line of nodes
+/// ```
+///
+/// φ follows from ψ, so that the three give the rotation back to rounding even where θ is so near
+/// to 0 or π that ψ and φ are hardly known apart.
+pub fn to_313(R: &Mat3<f64>) -> [f64; 3] {
+    let m = &R.0;
+    let sine = (m[0][2] * m[0][2] + m[1][2] * m[1][2]).sqrt();
+    let theta = Scalar::atan2(sine, m[2][2]);
+    if sine < 4.0 * f64::EPSILON {
+        return [Scalar::atan2(m[1][0], m[0][0]), theta, 0.0];
+    }
+    let psi = Scalar::atan2(m[0][2], -m[1][2]);
+    let (s, c) = Scalar::sin_cos(psi);
+    let [x, y] = [0, 1].map(|k| c * m[0][k] + s * m[1][k]);
+    [psi, theta, Scalar::atan2(-y, x)]
+}
+
 /// Returns the rotation with these angles between each axis and what it becomes, 0 … π, about that
 /// of the possible axes which is nearest to `near`; `None` where there is none.
 ///
@@ -172,4 +194,31 @@ pub fn snapped(r: &Mat3<f64>) -> Mat3<f64> {
             }
         })
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Also where θ is near 0 or π, where the two other angles are hardly known apart.
+        #[test]
+        fn angles_of_a_rotation_give_it_back(
+            psi in -4.0..4.0, phi in -4.0..4.0, theta in 0.0..std::f64::consts::PI,
+            near in prop::sample::select(vec![1.0, 1e-5, 1e-8, 1e-12, 0.0]), at_pi in any::<bool>(),
+        ) {
+            let theta = theta * near;
+            let theta = if at_pi { std::f64::consts::PI - theta } else { theta };
+            let R = from_313(psi, theta, phi);
+            let [a, b, c] = to_313(&R);
+            let back = from_313(a, b, c);
+            for row in 0..3 {
+                for column in 0..3 {
+                    let off = (back.0[row][column] - R.0[row][column]).abs();
+                    prop_assert!(off < 1e-14, "{off:e} at {theta:e}");
+                }
+            }
+        }
+    }
 }

@@ -554,3 +554,111 @@ fn an_angle_between_three_markers_is_a_variable() {
         "RTOD*INCANG(1,2,3)"
     );
 }
+
+/// The angles of an orientation, by their numbers.
+#[test]
+fn angles_of_an_orientation_are_variables() {
+    let text = format!(
+        "{HEAD}marker create marker_name = .m.ground.a location = 0,0,0\n{}\
+         measure create orient measure_name = .m.yaw to_frame = .m.p.cm from_frame = .m.ground.a &\n  \
+           characteristic = yaw_pitch_roll component = angle_1_component\n\
+         measure create orient measure_name = .m.roll to_frame = .m.p.cm &\n  \
+           characteristic = yaw_pitch_roll component = angle_3_component\n",
+        part("p")
+    );
+    let model = sound(&text);
+    let all: Vec<String> = model
+        .variables
+        .values()
+        .map(|v| text_of(&v.function))
+        .collect();
+    assert_eq!(all, ["RTOD*YAW(2,1)", "RTOD*ROLL(2,0)"]);
+}
+
+/// A link touches with its bar and its two round ends, whatever frame its first marker has.
+#[test]
+fn a_link_in_a_contact_is_its_bar_and_its_ends() {
+    let text = format!(
+        "{HEAD}{}marker create marker_name = .m.p.a location = 10, 20, 30 orientation = 90, 0, 0\n\
+         marker create marker_name = .m.p.b location = 10, 70, 30\n\
+         geometry create shape link link_name = .m.p.l i_marker = .m.p.a j_marker = .m.p.b width = 8 depth = 4\n\
+         marker create marker_name = .m.ground.c location = 0,0,0\n\
+         geometry create shape ellipsoid ellipsoid_name = .m.ground.e center_marker = .m.ground.c &\n  \
+           x_scale_factor = 2 y_scale_factor = 2 z_scale_factor = 2\n\
+         contact create contact_name = .m.k i_geometry_name = .m.p.l j_geometry_name = .m.ground.e &\n  \
+           stiffness = 1e5 damping = 10 dmax = 0.1 exponent = 2.2 coulomb_friction = off\n",
+        part("p")
+    );
+    let model = sound(&text);
+    let contact = model.contacts.values().next().expect("a contact");
+    assert_eq!((contact.i_geometry.len(), contact.j_geometry.len()), (3, 1));
+    let pose = |marker: u32| {
+        let all = model.statements();
+        let id = format!("MARKER/{marker}");
+        all.into_iter()
+            .find(|(of, _)| of.to_string() == id)
+            .map(|(_, text)| text)
+    };
+    use cognate::model::Shape;
+    for id in &contact.i_geometry {
+        match model.graphics[id].shape {
+            Shape::Box { corner, size } => {
+                assert_eq!(size, [50.0, 8.0, 4.0]);
+                // a corner half a width and half a depth beside the first marker
+                let qp = model.markers[&corner].qp;
+                assert!(
+                    (qp[0] - 14.0).abs() < 1e-12 && (qp[1] - 20.0).abs() < 1e-12,
+                    "{qp:?}"
+                );
+                assert!((qp[2] - 28.0).abs() < 1e-12, "{:?}", pose(corner));
+            }
+            Shape::Cylinder { cm, length, radius } => {
+                assert_eq!((length, radius), (4.0, 4.0));
+                assert!(model.markers[&cm].qp[2] - 28.0 < 1e-12);
+            }
+            ref other => panic!("{other:?}"),
+        }
+    }
+}
+
+/// Commands that could change a model and are not read are told; those that show it are not.
+#[test]
+fn what_is_not_read_is_told_and_what_only_shows_is_not() {
+    let said = |text: &str| read(&format!("{HEAD}{text}\n")).diagnostics;
+    for text in [
+        "macro create macro_name = .m.x commands = \"marker create\"",
+        "move translation part_name = .m.ground c1 = 5",
+        "group attributes group_name = .m.g active = off",
+        "file command read file_name = \"more.cmd\"",
+        "marker copy marker_name = .m.ground.a new_marker_name = .m.ground.b",
+    ] {
+        let found = said(text);
+        let told = |d: &&Diagnostic| d.code == "view_left_out" && d.severity == Severity::Warning;
+        assert!(found.iter().any(|d| told(&d)), "{text}: {found:#?}");
+    }
+    for text in [
+        "view erase",
+        "group create group_name = .m.g objects_in_group = .m.ground",
+        "part attributes part_name = .m.ground color = RED",
+        "model display model_name = m",
+    ] {
+        assert!(said(text).is_empty(), "{text}: {:#?}", said(text));
+    }
+}
+
+#[test]
+fn a_velocity_that_is_taken_away_is_not_given() {
+    let velocity = |more: &str| {
+        let text = format!(
+            "{HEAD}{}part create rigid_body initial_velocity part_name = .m.p vx = 5 wz = 90\n{more}",
+            part("p")
+        );
+        let part = &sound(&text).parts[&2];
+        (part.velocity[0], part.angular_velocity[2])
+    };
+    let (vx, wz) = velocity("");
+    assert_eq!(vx, Some(5.0));
+    assert!(wz.is_some_and(|w| (w - std::f64::consts::FRAC_PI_2).abs() < 1e-12));
+    let taken = "part modify rigid_body initial_velocity part_name = .m.p no_vx = true\n";
+    assert_eq!(velocity(taken).0, None);
+}

@@ -156,3 +156,39 @@ fn a_command_file_stays_as_it_is() {
         PENDULUM
     );
 }
+
+#[test]
+fn a_command_file_is_drawn_moved_linearized_and_explained_as_a_dataset_is() {
+    let model = scratch("view_doors", "pendulum.cmd", PENDULUM);
+    let picture = model.with_file_name("pendulum.svg");
+    let page = model.with_file_name("pendulum.html");
+    for arguments in [
+        vec!["draw", path(&model), "-o", path(&picture)],
+        vec!["animate", path(&model), "--end", "0.5", "-o", path(&page)],
+        vec!["verify", path(&model)],
+        vec!["explain", path(&model)],
+        vec![
+            "linear",
+            path(&model),
+            "--out",
+            path(model.parent().expect("a folder")),
+        ],
+        vec!["check", path(&model)],
+    ] {
+        let done = cognate(&arguments);
+        assert_eq!(done.code, 0, "{arguments:?}: {}", done.err);
+    }
+    assert!(picture.is_file() && page.is_file());
+    // what is run without --end is said
+    let done = cognate(&[
+        "run",
+        path(&model),
+        "-o",
+        path(&model.with_file_name("out")),
+    ]);
+    assert!(
+        done.err.contains("SIMULATE/DYNAMIC, END=0.5, STEPS=50"),
+        "{}",
+        done.err
+    );
+}

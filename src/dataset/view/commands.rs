@@ -64,6 +64,9 @@ const SHOWING: &[&str] = &[
     "xy_plots",
 ];
 
+/// First words of commands that may change a model, none of which is read.
+const UNREAD: &[&str] = &["acar", "aggregate", "macro", "mdi", "move", "parameter"];
+
 /// Verbs that stand where `create` stands.
 const VERBS: &[&str] = &[
     "create",
@@ -113,8 +116,10 @@ pub(super) fn meaning(typed: &[&str]) -> Meaning {
     }
     let shows = SHOWING.iter().any(|word| abbreviates(first, word));
     if heads.is_empty() {
+        let unread = UNREAD.iter().any(|word| abbreviates(first, word));
         return match shows {
             true => Meaning::Showing,
+            false if unread => Meaning::Unread,
             false => {
                 let all = COMMANDS.iter().map(|row| row.words[0]);
                 let mut near = crate::diagnostic::near_names(first, all);

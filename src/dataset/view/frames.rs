@@ -41,23 +41,6 @@ pub(super) fn turned(sequence: Sequence, angles: [f64; 3]) -> Mat3<f64> {
     }
 }
 
-/// Returns the body 3-1-3 angles of a rotation, in radians; where the second is 0 or half a turn,
-/// the third is 0.
-pub(super) fn angles_313(R: Mat3<f64>) -> [f64; 3] {
-    let m = R.0;
-    let sine = (m[0][2] * m[0][2] + m[1][2] * m[1][2]).sqrt();
-    let theta = Scalar::atan2(sine, m[2][2]);
-    // the square of the sine is below rounding: z and z' are one line
-    if sine < f64::EPSILON.sqrt() {
-        return [Scalar::atan2(m[1][0], m[0][0]), theta, 0.0];
-    }
-    let (psi, phi) = (
-        Scalar::atan2(m[0][2], -m[1][2]),
-        Scalar::atan2(m[2][0], m[2][1]),
-    );
-    [psi, theta, phi]
-}
-
 /// Returns numbers without what rounding has left of a zero beside larger ones.
 pub(super) fn cleaned(all: [f64; 3], size: f64) -> [f64; 3] {
     all.map(|x| {
@@ -256,7 +239,7 @@ impl Database {
 
     /// Returns the body 3-1-3 angles of an object in ground, in the file's unit.
     pub fn angles_of(&self, k: usize) -> Result<[f64; 3], Trouble> {
-        let angles = angles_313(self.pose(k)?.rotation);
+        let angles = rotation::to_313(&self.pose(k)?.rotation);
         Ok(angles.map(|x| x / self.units.angle()))
     }
 }

@@ -4,10 +4,11 @@
 
 use super::database::{Database, Datum, Pose};
 use super::evaluate::Trouble;
-use super::frames::{Reading, angles_313, cleaned, turned};
+use super::frames::{Reading, cleaned, turned};
 use super::term::Term;
 use crate::diagnostic::counted;
 use crate::scalar::Scalar;
+use crate::space::rotation::to_313;
 use crate::space::{Mat3, Vec3};
 
 /// Returns the axis of a letter.
@@ -366,7 +367,7 @@ impl Database {
         let axes = |k| self.axes(terms, k, within);
         let own = self.reading_pose(within)?;
         let turned_here = |R: Mat3<f64>| {
-            let angles = angles_313(own.rotation.transpose() * R);
+            let angles = to_313(&(own.rotation.transpose() * R));
             Datum::from(cleaned(angles, 1.0).map(|x| x / self.units.angle()))
         };
         Ok(match name {
@@ -379,7 +380,7 @@ impl Database {
             "ori_global" => {
                 let angles = point(0)?.0.map(|x| x * self.units.angle());
                 let R = frame(1)?.rotation * turned(super::database::Sequence::default(), angles);
-                Datum::from(angles_313(R).map(|x| x / self.units.angle()))
+                Datum::from(to_313(&R).map(|x| x / self.units.angle()))
             }
             "ori_align_axis" => {
                 let (a, b, against) = axes(1)?;
@@ -403,7 +404,7 @@ impl Database {
                 let (k, l, _) = axes(1)?;
                 let R = in_plane(Vec3([a, b, c]), Vec3([d, e, f]), Vec3([g, h, i]), k, l);
                 // points of ground; nested in ORI_RELATIVE_TO, the angles are those in ground
-                let angles = angles_313(R.ok_or_else(no_way)?);
+                let angles = to_313(&R.ok_or_else(no_way)?);
                 Datum::from(angles.map(|x| x / self.units.angle()))
             }
             _ => return Err(unknown(name)),
@@ -416,7 +417,7 @@ mod tests {
     use super::*;
 
     fn degrees(R: Mat3<f64>) -> [i32; 3] {
-        angles_313(R).map(|x| (x.to_degrees().round() as i32).rem_euclid(360))
+        to_313(&R).map(|x| (x.to_degrees().round() as i32).rem_euclid(360))
     }
 
     #[test]

@@ -350,13 +350,12 @@ impl<'a> Interpreter<'a> {
             return self.import(command);
         }
         match commands::meaning(&words) {
+            // groups and whatever else is switched off as one
+            Meaning::Showing if self.switches(command) => self.note_unread(&words, command),
             Meaning::Showing => {}
             Meaning::Row(row, verb) => self.make(row, verb, command),
             Meaning::Objects(verb) => self.change_objects(verb, command, &words),
-            Meaning::Unread => {
-                let told = self.unread.entry(words.join(" ").to_lowercase());
-                told.or_insert((0, command.head())).0 += 1;
-            }
+            Meaning::Unread => self.note_unread(&words, command),
             Meaning::Unknown(near) => {
                 let what = format!("there is no command `{}`", words.join(" "));
                 let d = Diagnostic::error("unknown_command", what);
@@ -370,6 +369,18 @@ impl<'a> Interpreter<'a> {
         }
     }
 
+    /// Counts a command that is not read.
+    fn note_unread(&mut self, words: &[&str], command: &Command) {
+        let told = self.unread.entry(words.join(" ").to_lowercase());
+        told.or_insert((0, command.head())).0 += 1;
+    }
+
+    /// Returns whether a command switches something on or off.
+    fn switches(&self, command: &Command) -> bool {
+        let mut names = command.arguments.iter().map(|a| self.slice(a.name));
+        names.any(|name| name.to_ascii_lowercase().ends_with("active"))
+    }
+
     /// Notes the file that solids are imported from.
     fn import(&mut self, command: &Command) {
         let mut all = command.arguments.iter();
@@ -381,9 +392,7 @@ impl<'a> Interpreter<'a> {
     /// Deletes objects, or makes them no part of the model.
     fn change_objects(&mut self, verb: &str, command: &Command, words: &[&str]) {
         if matches!(verb, "copy" | "rename") {
-            let told = self.unread.entry(words.join(" ").to_lowercase());
-            told.or_insert((0, command.head())).0 += 1;
-            return;
+            return self.note_unread(words, command);
         }
         let argument = |name: &str| {
             let mut all = command.arguments.iter();

@@ -154,6 +154,13 @@ impl Interpreter<'_> {
         (!is_inner).then_some(first.clone())
     }
 
+    /// Returns whether an argument says yes.
+    fn is_true(&self, argument: &Argument) -> bool {
+        let word = argument.values.first().map(|value| self.slice(value.span));
+        let yes = ["yes", "on", "true"];
+        word.is_some_and(|word| yes.iter().any(|y| y.eq_ignore_ascii_case(word)))
+    }
+
     /// Gives an argument of an object its values.
     fn give(
         &mut self,
@@ -204,10 +211,13 @@ impl Interpreter<'_> {
         };
         self.db.poses.borrow_mut().clear();
         if name == "ground_part" {
-            let word = argument.values.first().map(|v| self.slice(v.span));
-            let is =
-                word.is_some_and(|w| w.eq_ignore_ascii_case("yes") || w.eq_ignore_ascii_case("on"));
-            self.db.objects[k].is_ground |= is;
+            self.db.objects[k].is_ground |= self.is_true(argument);
+        }
+        // `no_vx = true` takes away what has been given
+        if let Some(other) = name.strip_prefix("no_")
+            && self.is_true(argument)
+        {
+            self.db.objects[k].attributes.remove(other);
         }
         // of one value in several forms the last counts
         if name.ends_with("_value") {

@@ -19,8 +19,21 @@ pub(super) struct Mass {
 /// Chords of a rounded corner: so many that its centre has the ten digits that View writes.
 const CHORDS: u32 = 2000;
 
-/// The sides that a circle of Adams View has where it is one.
+/// The sides that a cylinder has where nothing is said: it is a true circle, as Adams' masses show.
 const CIRCLE: f64 = 20.0;
+/// Up to so many sides a cylinder is a prism. Masses of Adams are known for 4 sides, which are one,
+/// and for 20; between the two nothing is known, which is told of those that are taken as round.
+const MOST_SIDES_OF_A_PRISM: f64 = 10.0;
+
+/// The section of a cylinder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Section {
+    Round,
+    /// taken as round, by its sides
+    MaybeRound(f64),
+    /// a regular polygon
+    Sides(f64),
+}
 
 impl Mass {
     fn zero() -> Self {
@@ -214,6 +227,26 @@ fn rounded(corners: &[[f64; 2]], radius: f64) -> Vec<[f64; 2]> {
     all
 }
 
+/// Returns the frame of a link between two markers, and its length: x along the line to the other,
+/// z as near to that of the first as it can be.
+pub(super) fn bar(i: &Pose, j: &Pose) -> (Pose, f64) {
+    let way = j.position - i.position;
+    let length = way.norm();
+    let x = match length > 0.0 {
+        true => way,
+        false => i.rotation.column(0),
+    };
+    let rotation = crate::space::rotation::from_z_and_x(
+        i.rotation.column(2) - x.times(i.rotation.column(2).dot(x) / x.dot(x)),
+        x,
+    );
+    let frame = Pose {
+        rotation: rotation.unwrap_or(i.rotation),
+        position: i.position,
+    };
+    (frame, length)
+}
+
 /// A reason why a mass is not known.
 pub(super) type Unknown = String;
 
@@ -316,10 +349,11 @@ impl Database {
             }
             "cylinder" => {
                 let (length, radius) = (number("length")?, number("radius")?);
-                let sides = self.number(k, "side_count_for_body").unwrap_or(CIRCLE);
-                let solid = match sides {
-                    3.0..=10.0 => prism(&regular(sides.trunc(), radius), 0.0, length),
-                    _ => revolved(&[[radius, 0.0], [radius, length]]),
+                let solid = match self.section(k) {
+                    Section::Sides(sides) => prism(&regular(sides, radius), 0.0, length),
+                    Section::Round | Section::MaybeRound(_) => {
+                        revolved(&[[radius, 0.0], [radius, length]])
+                    }
                 };
                 solid.moved(&at("center_marker")?)
             }
@@ -334,12 +368,11 @@ impl Database {
                 let (R, r) = (number("major_radius")?, number("minor_radius")?);
                 torus(R, r).moved(&at("center_marker")?)
             }
-            "link" => self.link(
-                k,
-                &at("i_marker")?,
-                &at("j_marker")?,
-                [number("width")?, number("depth")?],
-            ),
+            "link" => {
+                let (frame, length) = bar(&at("i_marker")?, &at("j_marker")?);
+                let half = number("depth")? / 2.0;
+                prism(&link_outline(length, number("width")?), -half, half).moved(&frame)
+            }
             "plate" => self.plate(k, part).map_err(|why| not(&why))?,
             "extrusion" => {
                 let points = self.profile(k).map_err(|why| not(&why))?;
@@ -362,6 +395,15 @@ impl Database {
         Ok(Some(solid))
     }
 
+    /// Returns the section of a cylinder.
+    pub fn section(&self, k: usize) -> Section {
+        match self.number(k, "side_count_for_body").unwrap_or(CIRCLE) {
+            CIRCLE => Section::Round,
+            n if (3.0..=MOST_SIDES_OF_A_PRISM).contains(&n) => Section::Sides(n.trunc()),
+            n => Section::MaybeRound(n),
+        }
+    }
+
     /// Returns a block of density 1 in the frame of its corner.
     fn block(&self, k: usize) -> Result<Mass, Unknown> {
         let sides = self.numbers(k, "diag_corner_coords");
@@ -375,26 +417,6 @@ impl Database {
             center: Vec3([a / 2.0, b / 2.0, c / 2.0]),
             tensor: Mat3::diagonal(square(b, c), square(a, c), square(a, b)),
         })
-    }
-
-    /// Returns a link between two markers: along the line to the other, its depth along z of the
-    /// first.
-    fn link(&self, _: usize, i: &Pose, j: &Pose, [width, depth]: [f64; 2]) -> Mass {
-        let way = j.position - i.position;
-        let length = way.norm();
-        let z = i.rotation.column(2);
-        let x = match length > 0.0 {
-            true => way,
-            false => i.rotation.column(0),
-        };
-        // the bar itself decides where z is not across it
-        let across = z - x.times(z.dot(x) / x.dot(x));
-        let rotation = crate::space::rotation::from_z_and_x(across, x);
-        let frame = Pose {
-            rotation: rotation.unwrap_or(i.rotation),
-            position: i.position,
-        };
-        prism(&link_outline(length, width), -depth / 2.0, depth / 2.0).moved(&frame)
     }
 
     /// Returns a plate through markers, with rounded corners.

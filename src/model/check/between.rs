@@ -1,7 +1,6 @@
 //! Forces that are asked between two markers between which nothing acts: they are zero for ever.
 
 use super::*;
-use crate::expr::ast::{Callee, Node};
 use crate::expr::measures::Measure;
 use std::cell::LazyCell;
 
@@ -88,39 +87,18 @@ pub(super) fn forces_act_where_asked(model: &Model, out: &mut Out) {
             near.into_iter().for_each(|near| advise(out, near));
         }
     }
-    for owned in model.formulas() {
-        let Formula::Expression { text, .. } = owned.formula else {
+    for (owned, measure, [i, j, _]) in model.measure_calls() {
+        if !is_force(measure) {
             continue;
+        }
+        let asked = match j {
+            0 => format!("{}({i})", measure.name()),
+            _ => format!("{}({i},{j})", measure.name()),
         };
-        let Ok(ast) = text.ast() else {
-            continue;
-        };
-        for node in &ast.nodes {
-            let Node::Call {
-                callee: Callee::Measure(measure),
-                args,
-            } = node
-            else {
-                continue;
-            };
-            // a marker that is not a number is none to be looked for
-            let number = |k: usize| match args.get(k).map(|&a| ast.node(a)) {
-                None => Some(0),
-                Some(Node::Number { literal, .. }) => Some(*literal as u32),
-                Some(_) => None,
-            };
-            let (true, Some(i), Some(j)) = (is_force(*measure), number(0), number(1)) else {
-                continue;
-            };
-            let asked = match j {
-                0 => format!("{}({i})", measure.name()),
-                _ => format!("{}({i},{j})", measure.name()),
-            };
-            if let Some((what, near)) = acting.doubt(&asked, i, j) {
-                let what = format!("{}: {what}", owned.argument);
-                warn(out, "nothing_acts", (owned.element, owned.place), what);
-                near.into_iter().for_each(|near| advise(out, near));
-            }
+        if let Some((what, near)) = acting.doubt(&asked, i, j) {
+            let what = format!("{}: {what}", owned.argument);
+            warn(out, "nothing_acts", (owned.element, owned.place), what);
+            near.into_iter().for_each(|near| advise(out, near));
         }
     }
 }

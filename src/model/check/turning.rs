@@ -3,7 +3,6 @@
 
 use super::*;
 use crate::arrange::Arrange;
-use crate::expr::ast::{Callee, Node};
 use crate::expr::measures::Measure;
 use crate::model::geometry::marker_frame;
 use crate::physics::joint::JointKind;
@@ -59,49 +58,24 @@ fn along(measure: Measure, axis: usize) -> Option<Measure> {
 
 /// Returns the axes about which functions ask for angles.
 fn asked(model: &Model) -> Vec<Asked<'_>> {
-    let mut found = Vec::new();
-    for by in model.formulas() {
-        let Formula::Expression { text, .. } = by.formula else {
-            continue;
+    let calls = model.measure_calls().into_iter();
+    let asked = calls.filter_map(|(by, measure, [i, j, k])| {
+        let (axis, is_speed) = axis_of(measure)?;
+        let about = if is_speed { k } else { j };
+        let between = Between {
+            is_speed,
+            i,
+            j,
+            about,
         };
-        let Ok(ast) = text.ast() else {
-            continue;
-        };
-        for node in &ast.nodes {
-            let Node::Call {
-                callee: Callee::Measure(measure),
-                args,
-            } = node
-            else {
-                continue;
-            };
-            let Some((axis, is_speed)) = axis_of(*measure) else {
-                continue;
-            };
-            // a marker that is not a number is none to be looked for
-            let number = |k: usize| match args.get(k).map(|&a| ast.node(a)) {
-                None => Some(0),
-                Some(Node::Number { literal, .. }) => Some(*literal as u32),
-                Some(_) => None,
-            };
-            let (Some(i), Some(j), Some(k)) = (number(0), number(1), number(2)) else {
-                continue;
-            };
-            let about = if is_speed { k } else { j };
-            found.push(Asked {
-                by: by.clone(),
-                measure: *measure,
-                between: Between {
-                    is_speed,
-                    i,
-                    j,
-                    about,
-                },
-                axis,
-            });
-        }
-    }
-    found
+        Some(Asked {
+            by,
+            measure,
+            between,
+            axis,
+        })
+    });
+    asked.collect()
 }
 
 /// The joints that turn about one axis, by the two parts that they join.

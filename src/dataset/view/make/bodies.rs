@@ -2,13 +2,14 @@
 
 use super::{Draft, Maker, Want};
 use crate::dataset::view::database::{Attribute, Item, Pose, Reference};
-use crate::dataset::view::frames::{angles_313, cleaned};
-use crate::dataset::view::mass::Mass;
+use crate::dataset::view::frames::cleaned;
+use crate::dataset::view::mass::{Mass, Section};
 use crate::dataset::view::term::Term;
 use crate::dataset::view::{PART, POINT_MASS};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::scalar::Scalar;
 use crate::space::Mat3;
+use crate::space::rotation::to_313;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -385,23 +386,20 @@ impl Maker<'_> {
 
     /// Says once which cylinders of many sides are taken as round.
     fn note_sides(&self) {
-        let is_odd = |k: &usize| {
-            let sides = self.db.number(*k, "side_count_for_body").unwrap_or(20.0);
-            let owner = self.db.owner(*k);
-            let counts = owner.is_some_and(|part| {
+        let counts = |k: usize| {
+            self.db.owner(k).is_some_and(|part| {
                 self.db.given(part, "mass").is_none() && !self.db.objects[part].is_ground
-            });
-            counts && sides > 10.0 && sides != 20.0
+            })
         };
-        let odd: Vec<usize> = self
-            .db
-            .of_kind("geometry shape cylinder")
-            .filter(is_odd)
-            .collect();
-        let Some(&first) = odd.first() else {
+        let all = self.db.of_kind("geometry shape cylinder");
+        let odd = all.filter_map(|k| match self.db.section(k) {
+            Section::MaybeRound(sides) if counts(k) => Some((k, sides)),
+            _ => None,
+        });
+        let odd: Vec<(usize, f64)> = odd.collect();
+        let Some(&(first, sides)) = odd.first() else {
             return;
         };
-        let sides = self.db.number(first, "side_count_for_body").unwrap_or(20.0);
         let turn = std::f64::consts::TAU;
         let less = 100.0 * (1.0 - sides / turn * Scalar::sin(turn / sides));
         let others = match odd.len() - 1 {
@@ -585,7 +583,7 @@ fn extent(mass: &Mass) -> f64 {
 
 /// Returns body 3-1-3 angles in degrees, without the rounding behind their eleventh digit.
 fn degrees(R: Mat3<f64>) -> [f64; 3] {
-    angles_313(R).map(|x| {
+    to_313(&R).map(|x| {
         let exact = x.to_degrees();
         let short = (exact * 1e9).round() / 1e9;
         match (short - exact).abs() < 1e-11 {

@@ -66,17 +66,11 @@ impl Maker<'_> {
             "measure pt2pt" => {
                 let from = self.marker(k, "from_point")?;
                 let to = self.marker(k, "to_point")?;
-                vector(
-                    &characteristic,
-                    "",
-                    component,
-                    &format!("{to},{from}"),
-                    frame,
-                )
+                vector(&characteristic, component, &format!("{to},{from}"), frame)
             }
             "measure point" => {
                 let at = self.marker(k, "point")?;
-                vector(&characteristic, "", component, &format!("{at},0"), frame)
+                vector(&characteristic, component, &format!("{at},0"), frame)
             }
             "measure angle" => {
                 let points = ["first_point", "middle_point", "last_point"];
@@ -161,7 +155,7 @@ impl Maker<'_> {
             let Some(of) = of.strip_prefix("cm_") else {
                 return Ok(None);
             };
-            let text = vector(of, "", component, &format!("{cm},0"), frame);
+            let text = vector(of, component, &format!("{cm},0"), frame);
             return Ok(text.map(|text| match of.starts_with("angular") {
                 true => self.degrees(text),
                 false => text,
@@ -199,7 +193,7 @@ impl Maker<'_> {
                 .and_then(|c| ["AX", "AY", "AZ"].get(c));
             return Ok(name.map(|name| self.degrees(format!("{name}({to},{from})"))));
         }
-        let text = vector(of, "", component, &format!("{to},{from}"), frame);
+        let text = vector(of, component, &format!("{to},{from}"), frame);
         Ok(text.map(|text| match of.starts_with("angular") {
             true => self.degrees(text),
             false => text,
@@ -208,7 +202,7 @@ impl Maker<'_> {
 }
 
 /// Returns the function of a vector between two markers, resolved in a frame.
-fn vector(of: &str, _: &str, component: usize, between: &str, frame: u32) -> Option<String> {
+fn vector(of: &str, component: usize, between: &str, frame: u32) -> Option<String> {
     let name = match of {
         "translational_displacement" | "position" | "displacement" => "D",
         "translational_velocity" | "velocity" => "V",

@@ -4,6 +4,7 @@
 //! bodies        parts, markers, graphics
 //! constraints   joints, primitives, motions, couplers, gears, curves
 //! forces        forces, bushings, beams, friction, contacts
+//! solids        solids of contacts
 //! data          variables, splines, matrices, arrays, equations, plants
 //! outputs       sensors, requests, settings
 //! measures      measures, which become variables
@@ -19,6 +20,7 @@ mod forces;
 mod function;
 mod measures;
 mod outputs;
+mod solids;
 
 use super::database::Database;
 use crate::arrange::Arrange;
@@ -347,15 +349,9 @@ impl<'a> Maker<'a> {
     /// Begins the record of an object's element.
     pub fn draft(&self, k: usize) -> Option<Draft> {
         let id = *self.ids.get(&k)?;
-        let object = &self.db.objects[k];
-        let row = STATEMENTS.iter().find(|row| row.kind() == Some(id.kind))?;
-        Some(self.begun(
-            *row,
-            Some(id.number),
-            Some(self.view_name(k)),
-            object.head,
-            Some(k),
-        ))
+        let mut draft = self.made(id, &self.view_name(k), self.db.objects[k].head)?;
+        draft.object = Some(k);
+        Some(draft)
     }
 
     /// Returns the name that Adams View writes above a statement: within a user-defined element
@@ -376,10 +372,16 @@ impl<'a> Maker<'a> {
         parts.join(".")
     }
 
+    /// Begins the record of an element that stands for no object.
+    pub fn made(&self, id: ElementId, name: &str, head: Span) -> Option<Draft> {
+        let row = STATEMENTS.iter().find(|row| row.kind() == Some(id.kind))?;
+        Some(self.begun(*row, Some(id.number), Some(name.to_owned()), head))
+    }
+
     /// Begins the record of a statement without a number.
     pub fn setting(&self, keyword: &str, head: Span) -> Option<Draft> {
         let row = STATEMENTS.iter().find(|row| row.keyword() == keyword)?;
-        Some(self.begun(*row, None, None, head, None))
+        Some(self.begun(*row, None, None, head))
     }
 
     fn begun(
@@ -388,7 +390,6 @@ impl<'a> Maker<'a> {
         id: Option<u32>,
         name: Option<String>,
         head: Span,
-        object: Option<usize>,
     ) -> Draft {
         let place = Place {
             line: self.source.place(head.start).0,
@@ -405,7 +406,7 @@ impl<'a> Maker<'a> {
                 head,
                 mistaken: false,
             },
-            object,
+            object: None,
             in_degrees: self.db.units.in_degrees(),
         }
     }
