@@ -837,8 +837,8 @@ class Words:
         FUNCTION : str | float, optional
             USER(…): the sum is computed by a routine.
         ROUTINE : str, optional
-            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines
-            are given to the library as closures.
+            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
+            --routines` loads libraries that have it; programs register closures.
 
         Returns
         -------
@@ -912,8 +912,8 @@ class Words:
         FUNCTION : str | float
             The expression that stays zero.
         ROUTINE : str, optional
-            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines
-            are given to the library as closures.
+            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
+            --routines` loads libraries that have it; programs register closures.
 
         Returns
         -------
@@ -1088,8 +1088,8 @@ class Words:
             The force or torque, e, as an expression of time, displacements, velocities and other
             elements.
         ROUTINE : str, optional
-            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines
-            are given to the library as closures.
+            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
+            --routines` loads libraries that have it; programs register closures.
 
         Returns
         -------
@@ -1145,8 +1145,8 @@ class Words:
         FUNCTION : str | float, optional
             USER(…): all components by a routine.
         ROUTINE : str, optional
-            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines
-            are given to the library as closures.
+            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
+            --routines` loads libraries that have it; programs register closures.
 
         Returns
         -------
@@ -1203,8 +1203,8 @@ class Words:
         FUNCTION : str | float, optional
             USER(…): all components by a routine.
         ROUTINE : str, optional
-            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines
-            are given to the library as closures.
+            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
+            --routines` loads libraries that have it; programs register closures.
 
         Returns
         -------
@@ -1270,8 +1270,8 @@ class Words:
         FUNCTION : str | float, optional
             USER(…): all components by a routine.
         ROUTINE : str, optional
-            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines
-            are given to the library as closures.
+            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
+            --routines` loads libraries that have it; programs register closures.
 
         Returns
         -------
@@ -1458,8 +1458,8 @@ class Words:
         FUNCTION : str | float, optional
             USER(…): the six components by a routine.
         ROUTINE : str, optional
-            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines
-            are given to the library as closures.
+            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
+            --routines` loads libraries that have it; programs register closures.
 
         Returns
         -------
@@ -1684,8 +1684,8 @@ class Words:
         FUNCTION : str | float, optional
             USER(…): the normal force by a routine.
         ROUTINE : str, optional
-            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines
-            are given to the library as closures.
+            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
+            --routines` loads libraries that have it; programs register closures.
 
         Returns
         -------
@@ -1844,8 +1844,8 @@ class Words:
         FUNCTION : str | float
             The rate, or what stays zero.
         ROUTINE : str, optional
-            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines
-            are given to the library as closures.
+            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
+            --routines` loads libraries that have it; programs register closures.
 
         Returns
         -------
@@ -2024,8 +2024,8 @@ class Words:
         FUNCTION : str | float, optional
             USER(…): the numbers that are passed to the routines.
         ROUTINE : str, optional
-            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines
-            are given to the library as closures.
+            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
+            --routines` loads libraries that have it; programs register closures.
 
         Returns
         -------
@@ -2164,8 +2164,8 @@ class Words:
         FUNCTION : str | float
             The expression that is watched.
         ROUTINE : str, optional
-            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines
-            are given to the library as closures.
+            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
+            --routines` loads libraries that have it; programs register closures.
         EVALUATE : str | float, optional
             Its value at the instant is SENVAL(id) from there on.
 
@@ -2291,8 +2291,8 @@ class Words:
         FUNCTION : str | float, optional
             USER(…): a routine computes the curve. Such a curve cannot be touched.
         ROUTINE : str, optional
-            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines
-            are given to the library as closures.
+            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
+            --routines` loads libraries that have it; programs register closures.
 
         Returns
         -------
@@ -2515,8 +2515,8 @@ class Words:
         FUNCTION : str | float, optional
             USER(…): the components by a routine.
         ROUTINE : str, optional
-            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). Routines
-            are given to the library as closures.
+            Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
+            --routines` loads libraries that have it; programs register closures.
 
         Returns
         -------
