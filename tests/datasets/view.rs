@@ -440,6 +440,26 @@ const MISTAKES: &[(&str, usize, &str, &str)] = &[
         "view_unsolved",
         "vpg_tire",
     ),
+    // decimal commas
+    (
+        "part create rigid_body name_and_position part_name = .m.a\npart create rigid_body mass_properties part_name = .m.a mass = 15,0 ixx = 1 iyy = 1 izz = 1",
+        4,
+        "view_expression",
+        "with a point",
+    ),
+    (
+        "marker create marker_name = .m.ground.i\nmarker create marker_name = .m.ground.j\nforce create element_like bushing bushing_name = .m.b i_marker_name = .m.ground.i j_marker_name = .m.ground.j stiffness = 1,2",
+        5,
+        "view_expression",
+        "3 numbers",
+    ),
+    // a lost & before the line of j_marker_name
+    (
+        "marker create marker_name = .m.ground.i\nconstraint create joint fixed joint_name = .m.j i_marker_name = .m.ground.i",
+        4,
+        "missing_argument",
+        "j has no j_marker_name an argument on a further line needs &",
+    ),
 ];
 
 #[test]

@@ -66,10 +66,22 @@ impl Maker<'_> {
         self.say(k, "", d);
     }
 
-    /// Gives I and J.
+    /// Gives I and J; one that is not given is a mistake.
     pub(super) fn markers(&self, draft: &mut Draft) {
-        self.element(draft, "i_marker_name", "I");
-        self.element(draft, "j_marker_name", "J");
+        for (argument, keyword) in [("i_marker_name", "I"), ("j_marker_name", "J")] {
+            self.element(draft, argument, keyword);
+            let missing = |k: &usize| self.db.given(*k, argument).is_none();
+            if let Some(k) = draft.object.filter(missing) {
+                draft.record.mistaken = true;
+                let what = format!("{} has no {argument}", self.db.inner_name(k));
+                let d = Diagnostic::error("missing_argument", what);
+                self.say(
+                    k,
+                    argument,
+                    d.help("an argument on a further line needs & before it"),
+                );
+            }
+        }
     }
 
     /// Gives a function, or USER with its routine; one that is not there is a mistake.

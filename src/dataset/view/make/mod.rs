@@ -145,6 +145,8 @@ pub(super) struct Draft {
     /// the object whose element it is
     pub object: Option<usize>,
     in_degrees: bool,
+    /// lists of the wrong length
+    wrong: Vec<(Span, String)>,
 }
 
 impl Draft {
@@ -164,6 +166,11 @@ impl Draft {
             self.record.kept.push((keyword.to_uppercase(), text));
             return;
         };
+        if let Some(wrong) = wrong_length(arguments[k].kind, &want) {
+            self.record.mistaken = true;
+            self.wrong.push((span, wrong));
+            return;
+        }
         let list = matches!(arguments[k].kind, Kind::Reals { .. });
         let ids = matches!(arguments[k].kind, Kind::Ids { .. });
         let numbers = |all: Vec<Number>| match (list, all.first()) {
@@ -211,6 +218,24 @@ impl Draft {
     pub fn flag(&mut self, keyword: &str) {
         self.give(keyword, Want::Flag, self.record.head);
     }
+}
+
+/// Returns what is wrong with the number of values that an argument gets.
+fn wrong_length(kind: Kind, want: &Want) -> Option<String> {
+    let (Want::Numbers(all) | Want::Degrees(all) | Want::Angles(all)) = want else {
+        return None;
+    };
+    let (least, most) = match kind {
+        Kind::Reals { min, max, .. } => (min, max),
+        _ => (1, 1),
+    };
+    let n = all.len();
+    let one = if most == 1 { "one number" } else { "" };
+    let meant = match one {
+        "" => kind.describe(),
+        one => one.to_owned(),
+    };
+    (!(least..=most).contains(&n)).then(|| format!("{meant} is meant here, not {n}"))
 }
 
 impl<'a> Maker<'a> {
@@ -408,10 +433,19 @@ impl<'a> Maker<'a> {
             },
             object: None,
             in_degrees: self.db.units.in_degrees(),
+            wrong: Vec::new(),
         }
     }
 
     pub fn push(&mut self, draft: Draft) {
+        for (span, what) in draft.wrong {
+            let d = Diagnostic::error("view_expression", what);
+            let mut d = self.source.locate(d, span);
+            d.name = draft.object.map(|k| self.db.inner_name(k));
+            self.db.say(
+                d.help("decimals are written with a point (1.5); a comma begins another value"),
+            );
+        }
         self.records.push(draft.record);
     }
 
