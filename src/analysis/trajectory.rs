@@ -44,6 +44,8 @@ pub enum Takeover {
     Stiff,
     /// branches changed where it was stiff
     Eased,
+    /// its steps cost less
+    Cheaper,
 }
 
 /// A position at which rows become dependent while the mechanism passes.
@@ -171,10 +173,13 @@ pub struct Trajectory {
     pub means: BTreeMap<usize, Vec<(f64, Vec<f64>)>>,
     /// what it cost
     pub stats: Stats,
+    /// the same in operations, about
+    pub operations: f64,
     /// the method that worked last for the states downstream of the mechanism, and how many steps
     /// they took; `None`: there are none
     pub downstream: Option<(&'static str, usize)>,
-    /// the methods that worked, in order, with the time at which each took over, and why
+    /// the methods that worked, in order, with the time at which each took over, and why; trials in
+    /// vain are not among them
     pub methods: Vec<(f64, String, Takeover)>,
     /// number of switches that were located
     pub events: usize,
@@ -241,6 +246,11 @@ impl Trajectory {
         self.t.last().is_none_or(|&last| last < t)
     }
 
+    /// Forgets that the last method worked: it was tried in vain.
+    pub(in crate::analysis) fn forget_method(&mut self) {
+        self.methods.pop();
+    }
+
     /// Notes that a method works from `t` on, unless it did so far.
     pub(in crate::analysis) fn begin_method(&mut self, t: f64, name: &str, why: Takeover) {
         if self.methods.last().is_none_or(|m| m.1 != name) {
@@ -257,6 +267,7 @@ impl Trajectory {
         sum.jacobians += more.jacobians;
         sum.factorizations += more.factorizations;
         sum.newton_iterations += more.newton_iterations;
+        sum.algebra += more.algebra;
         sum.below_rounding += more.below_rounding;
         sum.at_edge += more.at_edge;
         sum.stability_limited += more.stability_limited;

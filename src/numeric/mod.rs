@@ -31,6 +31,8 @@ pub(crate) mod runge_kutta;
 pub(crate) mod sparse;
 pub(crate) mod subdivision;
 
+pub use control::Weights;
+pub use noise::Noise;
 pub use radau::Radau;
 pub use runge_kutta::Dop853;
 
@@ -46,6 +48,9 @@ pub struct Failure {
     /// whether a smaller step may help (a stage left the domain) or not (a mistake of the user's)
     pub recoverable: bool,
 }
+
+/// Most changes of the length of one step that [`Ode::place_step`] asks for.
+const MOST_PLACINGS: usize = 4;
 
 /// An explicit system `ẏ = f(t, y)`, possibly with invariants `g(t, y) = 0` that exact solutions
 /// keep.
@@ -253,6 +258,8 @@ pub struct Stats {
     pub factorizations: usize,
     /// Newton iterations
     pub newton_iterations: usize,
+    /// operations of factorizations and solutions, about
+    pub algebra: usize,
     /// accepted steps with an error estimate above the permitted one that rounding explains (see
     /// `numeric/noise.rs`)
     pub below_rounding: usize,
@@ -359,6 +366,16 @@ pub trait Method<P: ?Sized> {
     }
     /// Goes on, after its start, with what a method of its kind has left where it ended.
     fn go_on(&mut self, _memory: &Memory) {}
+    /// Returns the errors that the unknowns are permitted.
+    fn weights(&self) -> &Weights;
+    /// Permits, after its start, the errors that another method has permitted so far.
+    fn take_weights(&mut self, weights: Weights);
+    /// Returns what is known of the rounding of errors, where that is measured.
+    fn noise(&self) -> Option<&Noise> {
+        None
+    }
+    /// Takes, after its start, what a method of its kind has known of rounding.
+    fn take_noise(&mut self, _noise: Noise) {}
     /// Proposes the length of the next step, in s.
     fn propose(&mut self, h: f64);
     /// Returns the end of the last accepted step, in s.

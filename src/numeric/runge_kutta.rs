@@ -160,9 +160,6 @@ enum Trouble {
 /// Widest interval without an evaluation, from and to these parts of a step.
 const STAGE_GAP: [f64; 2] = [1.0 / 3.0, 0.6];
 
-/// Most changes of the length of one step that [`Ode::place_step`] asks for.
-const MOST_PLACINGS: usize = 4;
-
 /// Relative error below which a filtered error is rounding, where invariants are nearly dependent;
 /// a smaller request is not enforced there.
 const INVARIANT_NOISE: f64 = 3e-10;
@@ -455,7 +452,7 @@ impl Dop853 {
         let evaluation = |f: Failure| Trouble::Reason(Reason::Evaluation(f), f.recoverable);
         let error = self.attempt(problem, h).map_err(evaluation)?;
         let better = problem.place_step(self.t0, h, STAGE_GAP, false);
-        if let Some(better) = better.filter(|_| self.placed < MOST_PLACINGS) {
+        if let Some(better) = better.filter(|_| self.placed < super::MOST_PLACINGS) {
             return Err(Trouble::Place(better));
         }
         if error.is_nan() {
@@ -535,6 +532,11 @@ impl Dop853 {
         let limited =
             self.beyond_edge >= STIFF_STEPS || fine && self.h_lambda > FINE_STABILITY_EDGE;
         self.stats.stability_limited += usize::from(limited);
+    }
+
+    /// Returns the number of evaluations in a step.
+    pub fn stages() -> usize {
+        UNWEIGHTED_STAGES + B.len()
     }
 
     /// Returns the unknown with the largest error estimate e₃.
@@ -695,6 +697,22 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
 
     fn go_on(&mut self, memory: &Memory) {
         self.h_next = memory.step;
+    }
+
+    fn weights(&self) -> &Weights {
+        &self.weights
+    }
+
+    fn take_weights(&mut self, weights: Weights) {
+        self.weights = weights;
+    }
+
+    fn noise(&self) -> Option<&Noise> {
+        Some(&self.noise)
+    }
+
+    fn take_noise(&mut self, noise: Noise) {
+        self.noise = noise;
     }
 
     fn propose(&mut self, h: f64) {

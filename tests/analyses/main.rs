@@ -50,4 +50,5 @@ mod statics;
 mod sweeps;
 mod swings;
 mod systems;
+mod trials;
 mod units;

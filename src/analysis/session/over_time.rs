@@ -440,6 +440,7 @@ fn methods(trajectory: &Trajectory) -> String {
             Takeover::Begins => "",
             Takeover::Stiff => ", where steps were limited by stiffness",
             Takeover::Eased => ", where branches changed",
+            Takeover::Cheaper => ", as its steps cost less",
         };
         text += &format!(", then {name} from {t}{why}");
     }

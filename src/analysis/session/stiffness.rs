@@ -14,8 +14,6 @@ const ENOUGH_STEPS: usize = 100;
 /// Share of the steps of a simulation that stability holds short from which on it is stiff: each
 /// begins with shorter ones, and every other one is shorter than the edge permits.
 const LEAST_SHARE: f64 = 0.25;
-/// Steps of the explicit method that cost as much as one of the implicit one, about.
-const STEPS_OF_ONE_IMPLICIT: f64 = 5.0;
 
 /// Stiffness that simulations have met.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,7 +22,7 @@ pub(super) struct MetStiffness {
     began: Option<f64>,
     /// steps of the explicit method that stability held short, in the last simulations
     limited: usize,
-    /// its steps per second in the last simulation
+    /// its operations per second in the last simulation
     explicit_rate: f64,
     is_stiff: bool,
     /// the implicit method has been tried, and was no cheaper
@@ -38,9 +36,10 @@ impl MetStiffness {
             return;
         };
         let stats = trajectory.stats;
-        let rate = (stats.steps + stats.rejected) as f64 / duration;
+        let rate = trajectory.operations / duration;
         match why {
             Takeover::Stiff => self.is_stiff = true,
+            Takeover::Cheaper => self.is_stiff = name != "DOP853",
             // the stiffness was that of a branch
             Takeover::Eased => (self.limited, self.is_stiff) = (0, false),
             Takeover::Begins if name == "DOP853" => {
@@ -54,7 +53,7 @@ impl MetStiffness {
             }
             Takeover::Begins => {
                 let explicit = self.explicit_rate;
-                self.is_in_vain |= explicit > 0.0 && STEPS_OF_ONE_IMPLICIT * rate > explicit;
+                self.is_in_vain |= explicit > 0.0 && rate > explicit;
             }
         }
     }

@@ -20,6 +20,8 @@ use std::sync::Arc;
 
 /// Entries of a Jacobian that counts as mostly empty, at most, as a part of all places.
 const MAX_DENSITY: f64 = 0.25;
+/// Operations that one on duals takes for each direction, about.
+const DUALS: usize = 3;
 
 /// Derivatives of all rates with respect to all unknowns, then to time.
 #[derive(Clone, Debug)]
@@ -171,6 +173,24 @@ impl System {
                 *entry = slope(i);
             }
         })
+    }
+
+    /// Returns about how many operations the Jacobian takes.
+    pub(in crate::analysis) fn operations_of_a_jacobian(&mut self) -> usize {
+        let along = match self.jacobian_pattern() {
+            Some(pattern) => pattern.groups().len(),
+            None => self.scene.layout.n_y() + 1,
+        };
+        let operations = self.operations();
+        match self.gradient() {
+            Gradient::Recorded(recording) => recording.program.n_operations(),
+            Gradient::Duals => DUALS * along * operations,
+        }
+    }
+
+    /// Returns about how many operations the Jacobian takes at most, which need not be recorded.
+    pub(in crate::analysis) fn most_operations_of_a_jacobian(&self) -> usize {
+        DUALS * (self.scene.layout.n_y() + 1) * self.operations()
     }
 
     /// Returns the entries of the Jacobian, whichever branches are held; `None` where it is full,

@@ -8,17 +8,16 @@ use crate::analysis::time::downstream::Downstream;
 use crate::analysis::time::energy;
 use crate::analysis::time::leg::{Finished, Leg, Limits};
 use crate::analysis::time::options::Options;
+use crate::analysis::time::trial::{self, Trial};
 use crate::analysis::trajectory::{Ended, Takeover, Trajectory};
 use crate::analysis::watch::Watch;
-use crate::numeric::{Memory, Method, Ode, Reason, Stop};
+use crate::numeric::{Memory, Method, Noise, Ode, Reason, Stop, Weights};
 use crate::scene::layout::Layout;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Restarts with other rows before something is wrong.
 const MAX_ROW_RESTARTS: usize = 10_000;
-/// Returns to the explicit method, at most.
-const MAX_RETURNS: usize = 100;
 /// Steps of an explicit method after which stiffness is not what it found at once.
 const STEPS_WITHOUT_STIFFNESS: usize = 60;
 
@@ -32,8 +31,15 @@ struct Course<'a> {
     restarts: usize,
     /// changes of branches after which the explicit method tries again; zero: never
     patience: usize,
-    /// returns to it so far
-    returns: usize,
+    /// trials so far, of the implicit method and of the explicit one
+    trials: [u32; 2],
+    /// pace of the other method, where this one is tried
+    pace: Option<f64>,
+    /// what a trial leaves to the method that begins: what the other one left there, and the errors
+    /// that were permitted
+    tried: Option<(Memory, Weights)>,
+    /// what the explicit method knows of rounding
+    noise: Option<Noise>,
 }
 
 impl<'a> Course<'a> {
@@ -49,20 +55,51 @@ impl<'a> Course<'a> {
             why: Takeover::Begins,
             restarts: 0,
             patience: usize::from(options.goes_on_stiff),
-            returns: 0,
+            trials: [0; 2],
+            pace: None,
+            tried: None,
+            noise: None,
         }
     }
 
     /// Returns what the simulation before leaves to the method that begins.
-    fn memory(&self) -> Option<&'a Memory> {
+    fn memory(&self) -> Option<&Memory> {
+        if let Some((memory, _)) = &self.tried {
+            return Some(memory);
+        }
         let begins = self.why == Takeover::Begins && self.restarts == 0;
         let (name, memory) = self.options.left.as_ref().filter(|_| begins)?;
         (*name == self.name).then_some(memory)
     }
 
+    /// Returns whether the method is the explicit one.
+    fn is_explicit(&self) -> bool {
+        self.name == "DOP853"
+    }
+
     /// Returns whether stiffness may change the method.
     fn may_change(&self) -> bool {
-        self.options.is_auto() && self.name == "DOP853"
+        self.options.is_auto() && self.is_explicit()
+    }
+
+    /// Returns what is tried: a method that stiffness has chosen goes on.
+    fn trial(&self) -> Trial {
+        let trials = self.trials[usize::from(!self.is_explicit())];
+        match self.pace {
+            Some(pace) => Trial::Against(pace, trials),
+            None if self.may_change() || self.why == Takeover::Cheaper => Trial::After(trials),
+            None => Trial::No,
+        }
+    }
+
+    /// Returns the name of the other method.
+    fn other(&self) -> String {
+        if self.is_explicit() {
+            "RADAU5"
+        } else {
+            "DOP853"
+        }
+        .into()
     }
 
     /// Returns after how many changes of branches the explicit method tries again; zero: never.
@@ -70,7 +107,7 @@ impl<'a> Course<'a> {
     /// A body that touches is stiff while it does. Where the explicit method finds the same
     /// stiffness at once, it is let try half as often.
     fn returns_after(&self) -> usize {
-        if self.name == "RADAU5" && self.returns < MAX_RETURNS {
+        if !self.is_explicit() {
             self.patience
         } else {
             0
@@ -81,7 +118,11 @@ impl<'a> Course<'a> {
     ///
     /// # Errors
     /// The reason why there is none.
-    fn go_on(&mut self, finished: Finished, method: &dyn Method<System>) -> Result<(), Ended> {
+    fn go_on(&mut self, finished: Finished, method: &mut dyn Method<System>) -> Result<(), Ended> {
+        let (pace, tried) = (self.pace.take(), self.tried.take());
+        if let Some(noise) = method.noise() {
+            self.noise = Some(noise.clone());
+        }
         (self.name, self.why) = match finished {
             Finished::Ended(why) => return Err(why),
             Finished::Parts => unreachable!("what is taken apart goes on elsewhere"),
@@ -90,7 +131,18 @@ impl<'a> Course<'a> {
                 if self.restarts > MAX_ROW_RESTARTS {
                     return Err(gave_up(method.t()));
                 }
+                self.pace = pace;
                 return Ok(());
+            }
+            Finished::Tries(pace) => {
+                self.trials[usize::from(!self.is_explicit())] += 1;
+                self.pace = Some(pace);
+                self.tried = method.leave().map(|left| (left, method.weights().clone()));
+                (self.other(), Takeover::Cheaper)
+            }
+            Finished::Dearer => {
+                self.tried = tried.map(|(left, _)| (left, method.weights().clone()));
+                (self.other(), Takeover::Cheaper)
             }
             Finished::Stiff => {
                 self.patience = if method.stats().steps > STEPS_WITHOUT_STIFFNESS {
@@ -100,10 +152,7 @@ impl<'a> Course<'a> {
                 };
                 ("RADAU5".into(), Takeover::Stiff)
             }
-            Finished::Eased => {
-                self.returns += 1;
-                ("DOP853".into(), Takeover::Eased)
-            }
+            Finished::Eased => ("DOP853".into(), Takeover::Eased),
         };
         Ok(())
     }
@@ -187,17 +236,22 @@ fn go(
             end,
             max_steps,
             memory: course.memory(),
+            weights: course.tried.as_ref().map(|tried| &tried.1),
+            noise: course.tried.as_ref().and(course.noise.as_ref()),
             may_change: course.may_change(),
             returns_after: course.returns_after(),
             may_part: options.may_part,
+            trial: course.trial(),
+            is_explicit: course.is_explicit(),
         };
         let beside = (downstream.as_deref_mut(), y.len());
         let mut leg = Leg::new(system, watch, limits, (out, &mut outputs), beside);
         let finished = leg.run(method.as_mut(), &y);
         out.add_cost(method.stats());
+        out.operations += trial::cost(system, course.is_explicit(), method.stats());
         system.branches_mut().release();
         // another method, or other rows
-        let Err(finished) = finished else {
+        let Err(mut finished) = finished else {
             let memory = method.leave();
             out.left = memory.map(|memory| (course.name, Arc::new(memory)));
             return;
@@ -210,7 +264,14 @@ fn go(
             out.parted = Some(system.row(method.t(), &y));
             return;
         }
-        if let Err(why) = course.go_on(finished, method.as_ref()) {
+        // a method that was tried leaves it to the other one to go on
+        if course.pace.is_some() && matches!(finished, Finished::Ended(Ended::Stop(_))) {
+            finished = Finished::Dearer;
+        }
+        if matches!(finished, Finished::Dearer) {
+            out.forget_method();
+        }
+        if let Err(why) = course.go_on(finished, method.as_mut()) {
             end_there(system, method.as_ref(), why, t0, out);
             return;
         }

@@ -19,9 +19,10 @@ use crate::analysis::time::output::Output;
 use crate::analysis::time::ranks::{Side, Sides};
 use crate::analysis::time::states::Node;
 use crate::analysis::time::switches::{self, Switches, Verdict};
+use crate::analysis::time::trial::{Trial, Watched};
 use crate::analysis::trajectory::{Ended, Trajectory};
 use crate::analysis::watch::Watch;
-use crate::numeric::{Memory, Method, Reason, Step, Stop};
+use crate::numeric::{Memory, Method, Noise, Reason, Step, Stop, Weights};
 use crate::scene::broken::Broken;
 
 /// Attempted steps after which a run must have come further by [`STALLED_PART`], at most and at
@@ -31,9 +32,6 @@ const STALLED_STEPS: [usize; 2] = [20_000, 500];
 const STALLED_OPERATIONS: usize = 300_000_000;
 /// Part of the duration, see [`STALLED_STEPS`]: a run that does not come further would not end.
 const STALLED_PART: f64 = 1e-8;
-/// Steps that are left, at least, where another method takes over: it starts with short steps, and
-/// each costs several of an explicit one.
-const STEPS_WORTH_A_CHANGE: f64 = 100.0;
 /// Attempted steps, and operations in them over the evaluations in each, at least, before
 /// mechanisms that nothing couples are taken apart: recording an operation costs as much as running
 /// it some thousand times, and below some milliseconds nobody waits.
@@ -54,6 +52,10 @@ pub(super) enum Finished {
     Ended(Ended),
     /// another method would do better from here
     Stiff,
+    /// the other method may do better: this one's pace
+    Tries(f64),
+    /// the method that was tried does no better
+    Dearer,
     /// branches have changed: what was stiff may be so no longer
     Eased,
     /// other rows are to be kept from here, or the state has been put onto all of them
@@ -78,8 +80,16 @@ pub(super) struct Limits<'a> {
     pub max_steps: usize,
     /// what a method of the same kind has left where this one begins; `None`: it begins anew
     pub memory: Option<&'a Memory>,
+    /// errors that another method has permitted so far, where this one goes on with them
+    pub weights: Option<&'a Weights>,
+    /// what this one has known of rounding, where it works again
+    pub noise: Option<&'a Noise>,
     /// whether another method may take over where stability limits the steps
     pub may_change: bool,
+    /// whether another method is tried, or this one
+    pub trial: Trial,
+    /// whether this one is explicit
+    pub is_explicit: bool,
     /// changes of branches after which the method before may try again; zero: never
     pub returns_after: usize,
     /// whether mechanisms that nothing couples may go on each by itself
@@ -117,6 +127,7 @@ pub(super) struct Leg<'a> {
     stalled_steps: usize,
     /// changes of branches so far
     changes: usize,
+    watched: Watched,
     /// narrow peaks within the step under way
     peaks: PeaksWithin,
     accountant: Accountant,
@@ -173,6 +184,7 @@ impl<'a> Leg<'a> {
             progressed: (0, limits.start),
             stalled_steps: affordable.clamp(least, most),
             changes: 0,
+            watched: Watched::new(limits.trial, limits.is_explicit, system),
             peaks: PeaksWithin::new(system, limits.end - limits.start),
             accountant: Accountant::default(),
             limit: limits.end,
@@ -215,9 +227,13 @@ impl<'a> Leg<'a> {
             if self.parts(method) && step.t1 < self.limits.end {
                 return Err(Finished::Parts);
             }
-            let left = (self.limits.end - method.t()) / step.h;
-            if self.limits.may_change && method.stiff() && left > STEPS_WORTH_A_CHANGE {
-                return Err(Finished::Stiff);
+            if step.t1 < self.limits.end {
+                if self.limits.may_change && method.stiff() {
+                    return Err(Finished::Stiff);
+                }
+                if let Some(other) = self.watched.judge(self.system, method) {
+                    return Err(other);
+                }
             }
         }
         Ok(())
@@ -245,6 +261,12 @@ impl<'a> Leg<'a> {
         method.start(self.system, t, y)?;
         if let Some(memory) = self.limits.memory {
             method.go_on(memory);
+        }
+        if let Some(weights) = self.limits.weights {
+            method.take_weights(weights.clone());
+        }
+        if let Some(noise) = self.limits.noise {
+            method.take_noise(noise.clone());
         }
         self.look_ahead(method)?;
         if let Some(h) = self.sense_beginning(method)? {

@@ -4,6 +4,7 @@
 //! dynamics     one method after another       options, trajectory: the question and the answer
 //! leg          the loop over the steps of one method; leg_rows, leg_output: its rows, its results
 //! switches     branches: held within a step, changed where they end; chatter: without end
+//! trial        which method costs less
 //! ranks        positions where rows become dependent; better rows; why a mechanism is locked
 //! kinematics   mechanisms without freedom; continuation: their steps along a branch;
 //!              kinematic_sensors: what is watched on the way
@@ -33,4 +34,5 @@ pub mod output;
 pub mod ranks;
 pub mod states;
 pub mod switches;
+mod trial;
 pub(super) mod valueless;

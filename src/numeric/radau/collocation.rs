@@ -390,6 +390,7 @@ pub(super) fn solve_collocation_system<P: Ode + ?Sized>(
         systems.solve(g1);
         systems.solve_complex(g2, g3);
         stats.newton_iterations += 1;
+        stats.algebra += systems.operations()[1];
         let correction = match stages.correct(scale, (begin.h, rounding)) {
             Ok(correction) => correction,
             Err(end) => return end,

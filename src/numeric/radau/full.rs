@@ -151,6 +151,11 @@ impl Full {
         }
     }
 
+    /// Returns how many unknowns are left when positions are eliminated.
+    pub fn n_kept(&self) -> usize {
+        self.kept.len()
+    }
+
     /// Factors both matrices.
     ///
     /// # Errors

@@ -63,8 +63,6 @@ const ORDER: usize = 5;
 const NOISY_TOLERANCE: f64 = 1.3e-7;
 /// Widest part of a step without evaluations.
 const STAGE_GAP: [f64; 2] = [collocation::C[0], collocation::C[1]];
-/// Most changes of the length of one step that [`Ode::place_step`] asks for.
-const MOST_PLACINGS: usize = 4;
 /// Difference of two steps, as a part of them, that is rounding of the times between which they
 /// lie: the factors of the matrices are the same.
 const SAME_STEP: f64 = 1e-9;
@@ -364,6 +362,7 @@ impl Radau {
         self.stats.factorizations += 1;
         self.freshness.h_factored = 0.0;
         self.systems.factor(GAMMA / h, ALPHA / h, BETA / h)?;
+        self.stats.algebra += self.systems.operations()[0];
         self.freshness.h_factored = h;
         Ok(())
     }
@@ -436,7 +435,7 @@ impl Radau {
             .extrapolate(self.begin.t, h, &mut self.stages);
         let solved = self.solve_stages(problem, h);
         let better = problem.place_step(self.begin.t, h, STAGE_GAP, solved.is_err());
-        if let Some(better) = better.filter(|_| self.placing.count < MOST_PLACINGS) {
+        if let Some(better) = better.filter(|_| self.placing.count < super::MOST_PLACINGS) {
             self.placing.better = Some(better);
             return Err(eased(better / h));
         }
@@ -736,6 +735,14 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
             let h = kept.freshness.h_factored;
             self.freshness.stale |= h != 0.0 && self.factor(h).is_err();
         }
+    }
+
+    fn weights(&self) -> &Weights {
+        &self.weights
+    }
+
+    fn take_weights(&mut self, weights: Weights) {
+        self.weights = weights;
     }
 
     fn propose(&mut self, h: f64) {

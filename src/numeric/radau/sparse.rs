@@ -44,6 +44,16 @@ impl Sparse {
         }
     }
 
+    /// Returns how many unknowns are left when positions are eliminated.
+    pub fn n_kept(&self) -> usize {
+        self.elimination.kept.len()
+    }
+
+    /// Returns the number of entries of the factors of one matrix.
+    pub fn fill(&self) -> usize {
+        self.real.factors.fill()
+    }
+
     /// Factors both matrices.
     ///
     /// # Errors

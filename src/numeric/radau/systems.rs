@@ -127,6 +127,17 @@ impl Systems {
         }
     }
 
+    /// Returns about how many operations a factorization takes, and a correction.
+    pub fn operations(&self) -> [usize; 2] {
+        // kept unknowns, and entries of the factors
+        let (m, fill) = match &self.kind {
+            Kind::Full(full) => (full.n_kept(), full.n_kept() * full.n_kept()),
+            Kind::Sparse(s) => (s.n_kept(), s.fill()),
+        };
+        // a complex multiplication is four, and the real system is there as well
+        [5 * fill * fill / (3 * m.max(1)), 5 * fill]
+    }
+
     /// Factors both matrices of (1).
     ///
     /// # Errors

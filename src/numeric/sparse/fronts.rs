@@ -331,7 +331,6 @@ impl<const P: usize> Fronts<P> {
     }
 
     /// Returns the number of entries of the factors.
-    #[cfg(test)]
     pub fn fill(&self) -> usize {
         self.factors.len() / P
     }

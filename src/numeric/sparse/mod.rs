@@ -126,12 +126,12 @@ impl<const P: usize> Factors<P> {
         }
     }
 
-    /// Returns the number of entries of L and U together (n² for dense factors).
-    #[cfg(test)]
-    fn fill(&self) -> usize {
+    /// Returns the number of entries of L and U together (n² for dense factors); before the first,
+    /// of the matrix.
+    pub fn fill(&self) -> usize {
         match &self.kind {
             Kind::Dense(_) => self.n * self.n,
-            Kind::Empty => 0,
+            Kind::Empty => self.pattern.len(),
             Kind::Sparse(fronts) => fronts.fill(),
         }
     }
