@@ -5,7 +5,7 @@ use super::Formula;
 use super::asker::Asker;
 use super::build::Builder;
 use super::compile::Compiler;
-use super::external_inputs::{ExternalInput, HookKind, SceneDelay, SceneHook};
+use super::external_inputs::{ExternalInput, HookKind, SceneDelay, SceneHook, closure_for};
 use super::history::DelayId;
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program};
@@ -114,8 +114,7 @@ impl Builder<'_> {
             return vec![self.formula(c, owner, formula); n];
         };
         let known = owner.owner().and_then(|element| {
-            let mut hooks = self.hooks.iter();
-            let closure = hooks.rposition(|h| h.stands_for(element, formula));
+            let closure = closure_for(self.hooks, element, formula);
             closure.map(|closure| (element, closure))
         });
         let Some((element, closure)) = known else {
@@ -168,7 +167,7 @@ impl Builder<'_> {
                 let asker = Asker::argument(id, argument);
                 let by_user = matches!(formula, ModelFormula::User { .. });
                 let told = match (takes_user, by_user) {
-                    (true, true) if self.hooks.iter().any(|h| h.stands_for(id, formula)) => {
+                    (true, true) if closure_for(self.hooks, id, formula).is_some() => {
                         let all = self.user(c, &asker, formula, 8, &[]);
                         self.scene.requests.insert(n, all);
                         continue;
