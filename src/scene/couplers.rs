@@ -7,7 +7,7 @@ use super::configuration::Configuration;
 use super::coordinate_sums::{Draws, displacement};
 use super::coupled::Coupled;
 use super::equations::Equations;
-use super::external_inputs::{ExternalInput, HookKind, SceneHook, closure_for};
+use super::external_inputs::{HookKind, closure_for};
 use super::{ConstraintElement, Displacement, JointVariable, Row, RowKind, Sum};
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::{ElementId, ElementKind, Formula, Joint, MarkerOwner};
@@ -102,19 +102,8 @@ impl Builder<'_> {
             scale: 1.0,
             law: hook.law.clone(),
         };
-        let (hook, n) = (self.scene.hooks.len(), coupled.numbers());
-        let places: Vec<usize> = (0..n)
-            .map(|k| self.supply(ExternalInput::Hook(hook, k)))
-            .collect();
-        coupled.places = places[0]..places[0] + n;
-        self.scene.hooks.push(SceneHook {
-            kind: HookKind::Coupled(Box::new(coupled.clone())),
-            element: name,
-            constants: coupled.constants.clone(),
-            n,
-            place: places[0],
-            output_only: false,
-        });
+        let kind = HookKind::Coupled(Box::new(coupled.clone()));
+        coupled.places = self.asked_of(kind, name, &coupled.constants, coupled.numbers());
         Some(Sum {
             terms: displacements.into_iter().map(|d| (1.0, d)).collect(),
             constant: 0.0,

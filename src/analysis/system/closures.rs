@@ -34,6 +34,7 @@ impl fmt::Debug for Callable {
 fn law(kind: &HookKind, element: ElementId, hooks: &[Hook]) -> Result<Callable, Vec<Unsupported>> {
     match kind {
         HookKind::User { closure, .. } => Ok(Callable(hooks[*closure].law.clone())),
+        HookKind::Touched(touched) => Ok(Callable(hooks[touched.closure].law.clone())),
         HookKind::Coupled(coupled) => {
             let coupled = coupled.clone();
             let ask = move |call: &Call<'_>, out: &mut [f64]| coupled.expand(call.values, out);
@@ -95,6 +96,7 @@ impl Bound {
     ) -> Result<Self, Vec<Unsupported>> {
         let inputs = record(scene, |at| match &hook.kind {
             HookKind::User { inputs, .. } => inputs.iter().map(|&f| at.formula(f)).collect(),
+            HookKind::Touched(touched) => touched.numbers(at),
             HookKind::Coupled(coupled) => {
                 let all = coupled.displacements.iter();
                 all.map(|d| at.displacement(d).value)
@@ -114,7 +116,9 @@ impl Bound {
             return Err(vec![Unsupported::new(hook.element, Lack::OwnResult)]);
         }
         let reads = match &hook.kind {
-            HookKind::User { .. } | HookKind::Coupled(_) => vec![true; inputs.n_outputs()],
+            HookKind::User { .. } | HookKind::Coupled(_) | HookKind::Touched(_) => {
+                vec![true; inputs.n_outputs()]
+            }
             HookKind::Touches { question, .. } => {
                 (0..inputs.n_outputs()).map(|k| question.reads(k)).collect()
             }
