@@ -314,6 +314,118 @@ fn the_library_that_routine_names_is_taken() {
     assert_eq!(off(&known, &found), 0.0);
 }
 
+#[test]
+fn sweeps_and_pictures_call_routines_as_runs_do() {
+    let test = "routines_elsewhere";
+    let model = root("examples/routines/pendulum.adm");
+    let text = std::fs::read_to_string(&model).unwrap();
+    let text = text.replace("USER(0.4,21,1)", "-0.4*WZ(21,1)");
+    let expression = scratch(test, "expression.adm", &text);
+    let folder = expression.parent().unwrap();
+    let sweep = |model: &Path, name: &str, args: &[&str]| {
+        let out = folder.join(name);
+        let _ = std::fs::remove_file(&out);
+        let first = [
+            "sweep",
+            path(model),
+            "--quiet",
+            "--end",
+            "2",
+            "--out",
+            path(&out),
+        ];
+        let of = ["--set", "PART/2.MASS=1,2", "--measure", "last(AZ(21))"];
+        ok(&[&first, &of[..], args].concat());
+        let text = std::fs::read_to_string(&out).unwrap();
+        let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let names = lines.next().unwrap();
+        let column = names.iter().position(|n| n.contains("last(AZ(21))"));
+        let column = column.unwrap_or_else(|| panic!("{text}"));
+        let values = lines.filter_map(|line| line[column].parse().ok());
+        values.collect::<Vec<f64>>()
+    };
+    let known = sweep(&expression, "known.csv", &[]);
+    for source in ["damper.c", "damper.py"] {
+        let source = root("examples/routines").join(source);
+        let Some(library) = library(test, &source, "damper.so") else {
+            continue;
+        };
+        let routines = ["--routines", path(&library)];
+        let found = sweep(&model, "found.csv", &routines);
+        assert_eq!((known.len(), found.len()), (2, 2), "{known:?} {found:?}");
+        for (a, b) in known.iter().zip(&found) {
+            assert!((a - b).abs() < 1e-9, "{known:?} {found:?}");
+        }
+        let page = folder.join("page.html");
+        let animate = [
+            "animate",
+            path(&model),
+            "--end",
+            "1",
+            "--out",
+            path(&page),
+            "--overwrite",
+        ];
+        ok(&[&animate, &routines[..]].concat());
+        assert!(page.metadata().unwrap().len() > 10_000);
+    }
+}
+
+#[test]
+fn a_turbine_of_fast_spins_up_in_the_wind_of_a_routine() {
+    let test = "routines_turbine";
+    let Some(corpus) = needs::corpus() else {
+        return;
+    };
+    let source = root("examples/routines/turbine.c");
+    let Some(library) = library(test, &source, "turbine.so") else {
+        return;
+    };
+    let folder = corpus.join("old-NWTC__FAST/CertTest/Old_Adams_files");
+    let dataset = folder.join("Test13_ADAMS.adm");
+    // the commands that come with it let go of all motions and joints that hold it; begun at half of its speed
+    let commands = std::fs::read_to_string(folder.join("Test13_ADAMS.acf")).unwrap();
+    let held = commands
+        .lines()
+        .filter(|line| line.starts_with("DEACTIVATE"));
+    let held: Vec<&str> = held.collect();
+    assert!(held.len() > 5, "{commands}");
+    let commands = format!(
+        "{}\nturbine\nMOTION/3150, VELOCITY, FUNCTION=1\nSIMULATE/DYNAMICS, END=0.005, DTOUT=0.005\n{}\n\
+         SIMULATE/DYNAMICS, END=1, DTOUT=0.05\nSTOP\n",
+        path(&dataset),
+        held.join("\n")
+    );
+    let commands = scratch(test, "turbine.acf", &commands);
+    let folder = commands.parent().unwrap();
+    let speed = |args: &[&str]| {
+        let first = [
+            "run",
+            path(&commands),
+            "--quiet",
+            "--no-accuracy",
+            "--zero-user",
+        ];
+        let of = [
+            "--column",
+            "WZ(3150,2050,2050)",
+            "--out",
+            path(folder),
+            "--name",
+            "speed",
+        ];
+        ok(&[&first, &of[..], args].concat());
+        let columns = table(folder, "speed");
+        let (_, speed) = columns.iter().find(|c| c.0.starts_with("WZ")).unwrap();
+        (speed[0], speed[speed.len() - 1])
+    };
+    let (begins, ends) = speed(&["--routines", path(&library)]);
+    assert!((begins - 1.0).abs() < 1e-6, "{begins}");
+    assert!(ends > 1.05 && ends < 1.5, "{ends}");
+    let (_, without_wind) = speed(&[]);
+    assert!(without_wind < ends - 0.04, "{without_wind} {ends}");
+}
+
 /// Runs the pendulum with another function and a library; returns what is told.
 fn refused(test: &str, function: &str, args: &[&str]) -> (i32, String) {
     let text = std::fs::read_to_string(root("examples/routines/pendulum.adm")).unwrap();

@@ -17,7 +17,8 @@ mod structures;
 use super::mistake::Mistake;
 use super::{Failure, remark};
 use cognate::analysis::session::Session;
-use cognate::dataset::Dataset;
+use cognate::analysis::sweep::Sweep;
+use cognate::dataset::{Dataset, Reading};
 use cognate::diagnostic::{Cause, Diagnostic, Severity, counted};
 use cognate::disk;
 use cognate::internals::system::asked::Asked;
@@ -59,6 +60,9 @@ const KINDS: [(K, &str, &str, Form); 14] = [
     (K::Contact, FRICTION_FUNCTION, "Cffsub", Form::Friction),
 ];
 
+/// Size of what a routine is told from which on its results may overflow.
+const FARTHEST: f64 = 1e100;
+
 const FUNCTION: &str = "FUNCTION";
 const FRICTION_FUNCTION: &str = "FRICTION_FUNCTION";
 const COUSUB: &str = "Cousub";
@@ -94,7 +98,7 @@ struct Wanted<'m> {
 }
 
 impl RoutineArgs {
-    /// Loads the libraries and has their routines compute the USERs of a model; `zero_user`: what
+    /// Loads the libraries and has their routines compute the USERs of a session; `zero_user`: what
     /// no library has is zero.
     ///
     /// # Errors
@@ -107,31 +111,7 @@ impl RoutineArgs {
         zero_user: bool,
     ) -> Result<Mistake, Failure> {
         let mistake = Mistake::default();
-        if self.libraries.is_empty() {
-            return Ok(mistake);
-        }
-        let libraries = self
-            .libraries
-            .iter()
-            .map(|path| Ok((stem(path), load(path)?)));
-        let libraries: Vec<_> = libraries.collect::<Result<_, Failure>>()?;
-        let (found, wrong) = found(&session.model, &libraries, zero_user);
-        if !wrong.is_empty() {
-            return Err(Failure::in_model(dataset, wrong));
-        }
-        let mut hooks = Vec::with_capacity(found.len());
-        let mut wrong = Vec::new();
-        for (wanted, routine) in found {
-            let asker = asker(&session.model, wanted.element, wanted.form);
-            let hook = hook(&wanted, asker, routine, &mistake);
-            if session.model.is_active(wanted.element) {
-                wrong.extend(wrong_questions(&session.model, wanted.element, &hook));
-            }
-            hooks.push(hook);
-        }
-        if !wrong.is_empty() {
-            return Err(Failure::in_model(dataset, wrong));
-        }
+        let hooks = self.hooks(&session.model, dataset, zero_user, &mistake)?;
         hooks
             .into_iter()
             .for_each(|hook| session.register_hook(hook));
@@ -139,6 +119,61 @@ impl RoutineArgs {
         let event = |name| Event::Info(format!("routines: {name}"));
         session.run.log.extend(names.map(event));
         Ok(mistake)
+    }
+
+    /// Has the routines compute the USERs of all runs of a sweep.
+    ///
+    /// # Errors
+    /// Those of [`compute`](Self::compute).
+    pub fn compute_in(
+        &self,
+        sweep: &mut Sweep,
+        reading: &Reading,
+        zero_user: bool,
+    ) -> Result<Mistake, Failure> {
+        let mistake = Mistake::default();
+        let Reading { model, dataset, .. } = reading;
+        for Hook { name, inputs, law } in self.hooks(model, dataset, zero_user, &mistake)? {
+            let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
+            sweep.register(&name, &inputs, move |call, out| law(call, out));
+        }
+        Ok(mistake)
+    }
+
+    /// Loads the libraries; returns closures that call their routines.
+    fn hooks(
+        &self,
+        model: &Model,
+        dataset: &Dataset,
+        zero_user: bool,
+        mistake: &Mistake,
+    ) -> Result<Vec<Hook>, Failure> {
+        if self.libraries.is_empty() {
+            return Ok(Vec::new());
+        }
+        let libraries = self
+            .libraries
+            .iter()
+            .map(|path| Ok((stem(path), load(path)?)));
+        let libraries: Vec<_> = libraries.collect::<Result<_, Failure>>()?;
+        let (found, wrong) = found(model, &libraries, zero_user);
+        if !wrong.is_empty() {
+            return Err(Failure::in_model(dataset, wrong));
+        }
+        let mut hooks = Vec::with_capacity(found.len());
+        let mut wrong = Vec::new();
+        for (wanted, routine) in found {
+            let asker = asker(model, wanted.element, wanted.form);
+            let hook = hook(&wanted, asker, routine, mistake);
+            if model.is_active(wanted.element) {
+                wrong.extend(wrong_questions(model, wanted.element, &hook));
+            }
+            hooks.push(hook);
+        }
+        if !wrong.is_empty() {
+            return Err(Failure::in_model(dataset, wrong));
+        }
+        Ok(hooks)
     }
 }
 
@@ -349,6 +384,11 @@ fn hook(wanted: &Wanted<'_>, asker: Asker, found: Found, mistake: &Mistake) -> H
             };
             let done = found.compute(&asker, call.constants, given, asked, results);
             told.hear(&done.asked);
+            // a step that has gone astray is not the routine's mistake, and is not kept
+            if done.odd.is_some() && call.values.iter().any(|x| x.is_nan() || x.abs() > FARTHEST) {
+                results.fill(f64::NAN);
+                return;
+            }
             told.check(call.time, done.odd);
         }),
     }

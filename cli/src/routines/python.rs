@@ -7,7 +7,7 @@
 //! ```text
 //! F name                            is there such a function?                     Y, N
 //! D name members                    an element, as JSON                           Y number
-//! C element name first args         a call; until R or E Python may ask:          R numbers, E text
+//! C element name PAR args           a call; until R or E Python may ask:          R numbers, E text
 //!     A name numbers                a function of the model                       v number, n
 //!     S name numbers                several at once                               v numbers, n
 //!     M ends text                   a message                                     v
@@ -182,7 +182,6 @@ impl Routine {
         let mut members = of.structure.members();
         members.insert("ID".into(), of.id.into());
         members.insert("NPAR".into(), par.len().into());
-        members.insert("PAR".into(), par.into());
         let text = serde_json::Value::Object(members).to_string();
         pipes.write(b'D', text.as_bytes())?;
         let (_, bytes) = pipes.read()?;
@@ -249,7 +248,7 @@ fn put_text(frame: &mut Vec<u8>, text: &str) {
     frame.extend(text.as_bytes());
 }
 
-/// Puts the arguments behind the element, in the order of the C convention without counts: flags
+/// Puts the numbers of USER and the arguments behind the element, in the order of the C convention without counts: flags
 /// (`b`), whole numbers (`i`), numbers (`d`), lists (`v`).
 fn put_arguments(frame: &mut Vec<u8>, at: Moment<'_>, ask: &Ask<'_>) {
     let mut put = |kind: u8, bytes: &[u8]| {
@@ -261,6 +260,7 @@ fn put_arguments(frame: &mut Vec<u8>, at: Moment<'_>, ask: &Ask<'_>) {
         bytes.extend(all.iter().flat_map(|x| x.to_le_bytes()));
         bytes
     };
+    put(b'v', &list(at.par));
     let (first, no) = ([u8::from(at.is_first)], [0]);
     if let Ask::Curve(alpha, iord) = ask {
         put(b'd', &alpha.to_le_bytes());

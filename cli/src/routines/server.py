@@ -123,7 +123,9 @@ def serve(module):
             element, n = struct.unpack_from("<II", data)
             function = getattr(module, data[8 : 8 + n].decode())
             try:
-                result = flat(function(elements[element], *arguments(data[8 + n :])))
+                numbers, *rest = arguments(data[8 + n :])
+                elements[element].PAR = numbers
+                result = flat(function(elements[element], *rest))
                 write(b"R", struct.pack("<%dd" % len(result), *result))
             except BaseException as error:
                 write(b"E", mistake(error).encode())
