@@ -141,8 +141,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     check_columns(args, &model, &steps)?;
     let name = args.name.as_ref().unwrap_or(&job.base);
     let mut session = open(args, (model, is_as_read), name);
-    let zero_user = args.unsolved.zero_user;
-    let mistake = (args.routines).compute(&mut session, &dataset, zero_user)?;
+    let mistake = (args.routines).compute(&mut session, &dataset, args.unsolved.zero_user)?;
     let seconds = &mut session.run.record.seconds;
     seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;

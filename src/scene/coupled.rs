@@ -15,20 +15,11 @@
 
 use super::Displacement;
 use super::external_inputs::{Call, Law};
+use crate::expr::interpolation::computed;
 use crate::model::ElementId;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Step of differences, as a part of what counts as one.
-const STEP: f64 = 1e-3;
-/// Weights of differences of fourth order at 1 and 2 steps to either side, over the step.
-const WEIGHTS: [f64; 2] = [8.0 / 12.0, -1.0 / 12.0];
-/// The same of second differences, over the square of the step; those in the middle come to −5/2.
-const SECOND_WEIGHTS: [f64; 2] = [16.0 / 12.0, -1.0 / 12.0];
-/// Difference between a given partial derivative and a found one at which they disagree, as a part
-/// of the largest.
-const DISAGREEMENT: f64 = 1e-4;
 
 /// Numbers of a constraint of `n` displacements: its value, its first partial derivatives, and the
 /// second, row by row from the diagonal on. A closure leaves NaN where it does not give one.
@@ -37,7 +28,7 @@ pub struct Partials(pub usize);
 
 impl Partials {
     /// Returns how many numbers there are.
-    pub fn len(self) -> usize {
+    pub fn count(self) -> usize {
         1 + self.0 + self.0 * (self.0 + 1) / 2
     }
 
@@ -91,13 +82,13 @@ impl Coupled {
 
     /// Returns how many numbers [`Coupled::expand`] fills in.
     pub fn numbers(&self) -> usize {
-        self.n() + self.partials().len()
+        self.n() + self.partials().count()
     }
 
     /// Calls the closure at displacements and time.
     fn call(&self, x: &[f64]) -> Vec<f64> {
         let (time, values) = x.split_last().unwrap_or((&0.0, &[]));
-        let mut out = vec![f64::NAN; Partials(values.len()).len()];
+        let mut out = vec![f64::NAN; Partials(values.len()).count()];
         let call = Call {
             time: *time,
             element: self.element,
@@ -130,53 +121,38 @@ impl Coupled {
                 rest[all.second(k, l)] = match (known.filter(|h| !h.is_nan()), slope) {
                     (Some(h), _) => h,
                     (None, Some(slope)) => self.slope(x, l, slope),
-                    (None, None) => self.curvature(x, k, l, here[0]),
+                    (None, None) => self.curvature(x, k, l),
                 };
             }
         }
     }
 
     fn step(&self, k: usize) -> f64 {
-        STEP * self.units.get(k).copied().unwrap_or(1.0)
+        computed::STEP * self.units.get(k).copied().unwrap_or(1.0)
+    }
+
+    /// Returns one of the closure's numbers at displacements and time that are moved along some.
+    fn moved(&self, x: &[f64], along: [(usize, f64); 2], number: usize) -> f64 {
+        let mut moved = x.to_vec();
+        along.iter().for_each(|&(k, by)| moved[k] += by);
+        self.call(&moved)[number]
     }
 
     /// Returns the derivative of one of the closure's numbers along a variable.
     fn slope(&self, x: &[f64], k: usize, number: usize) -> f64 {
-        let h = self.step(k);
-        let at = |steps: f64| {
-            let mut moved = x.to_vec();
-            moved[k] += steps * h;
-            self.call(&moved)[number]
-        };
-        let ends = (1..).zip(WEIGHTS);
-        ends.map(|(i, w)| w * (at(f64::from(i)) - at(-f64::from(i))))
-            .sum::<f64>()
-            / h
+        let at = |by: f64| self.moved(x, [(k, by), (k, 0.0)], number);
+        computed::slope(&at, self.step(k))
     }
 
-    /// Returns the second derivative of the value along two variables; `middle`: the value.
-    fn curvature(&self, x: &[f64], k: usize, l: usize, middle: f64) -> f64 {
+    /// Returns the second derivative of the value along two variables.
+    fn curvature(&self, x: &[f64], k: usize, l: usize) -> f64 {
         // wider, as rounding is divided by the square
-        let wide = 10.0;
-        let (h, g) = (wide * self.step(k), wide * self.step(l));
-        let at = |i: f64, j: f64| {
-            let mut moved = x.to_vec();
-            moved[k] += i * h;
-            moved[l] += j * g;
-            self.call(&moved)[0]
-        };
-        let ends = || (1..).map(f64::from);
+        let [h, g] = [k, l].map(|k| 10.0 * self.step(k));
         if k == l {
-            let of = |(i, w): (f64, f64)| w * (at(i, 0.0) - 2.0 * middle + at(-i, 0.0));
-            return ends().zip(SECOND_WEIGHTS).map(of).sum::<f64>() / (h * h);
+            return computed::curvature(&|by| self.moved(x, [(k, by), (k, 0.0)], 0), h);
         }
-        let mut sum = 0.0;
-        for (i, v) in ends().zip(WEIGHTS) {
-            for (j, w) in ends().zip(WEIGHTS) {
-                sum += v * w * (at(i, j) - at(-i, j) - at(i, -j) + at(-i, -j));
-            }
-        }
-        sum / (h * g)
+        let slope = |to: f64| computed::slope(&|by| self.moved(x, [(k, by), (l, to)], 0), h);
+        computed::slope(&slope, g)
     }
 
     /// Returns a partial derivative that the closure gives and that differences contradict: along
@@ -187,7 +163,7 @@ impl Coupled {
         let first = (0..m).map(|k| (vec![k], given.first(k), self.slope(x, k, 0)));
         let pairs = (0..m).flat_map(|k| (k..m).map(move |l| (k, l)));
         let second = pairs.map(|(k, l)| {
-            let found = self.curvature(x, k, l, here[0]);
+            let found = self.curvature(x, k, l);
             (vec![k, l], given.second(k, l), found)
         });
         let all: Vec<_> = first.chain(second).collect();
@@ -197,7 +173,7 @@ impl Coupled {
         all.into_iter().find_map(|(along, place, found)| {
             let told = here[place];
             let off = (told - found).abs() * per(&along);
-            (off > DISAGREEMENT * size).then_some((along, [told, found]))
+            (off > computed::DISAGREEMENT * size).then_some((along, [told, found]))
         })
     }
 }

@@ -208,7 +208,7 @@ fn what_a_routine_in_python_does_wrong_is_told_with_its_line() {
             "late",
             "its routine has asked for AZ(21, 1), but not in its first call",
         ),
-        ("several", "several returns 2 numbers, 1 are needed"),
+        ("several", "several returns 2 numbers; it needs 1"),
         (
             "nothing",
             "odd.py:7: ValueError: there is no function WHATEVER",
@@ -480,12 +480,13 @@ fn what_a_routine_does_wrong_ends_the_run_with_its_name() {
 fn libraries_that_cannot_be_loaded_are_told() {
     let test = "routines_refused";
     let function = "FUNCTION=USER(1)";
-    for (name, contents, said) in [("text.so", "no library", "cannot be loaded")] {
-        let file = scratch(test, name, contents);
-        let (code, err) = refused(test, function, &["--routines", path(&file)]);
-        assert_eq!(code, 3, "{err}");
-        assert!(err.contains(said) && err.contains(name), "{err}");
-    }
+    let file = scratch(test, "text.so", "no library");
+    let (code, err) = refused(test, function, &["--routines", path(&file)]);
+    assert_eq!(code, 3, "{err}");
+    assert!(
+        err.contains("cannot be loaded") && err.contains("text.so"),
+        "{err}"
+    );
     let (code, err) = refused(test, function, &["--routines", "nowhere.so"]);
     assert!(
         code == 3 && err.contains("nowhere.so: cannot be opened"),

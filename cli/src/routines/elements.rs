@@ -1,4 +1,4 @@
-//! What routines are told of their elements, from the model.
+//! Facts that routines are told of their elements, from the model.
 
 use super::forms::{Asker, Form};
 use super::structures::Structure;
@@ -57,21 +57,16 @@ pub fn asker(model: &Model, element: ElementId, form: Form) -> Asker {
         }),
         K::Gse => model.general_systems.get(&n).map(|g| {
             let inputs = g.u.and_then(|u| model.arrays.get(&u)).map(|a| &a.kind);
-            let n_inputs = match inputs {
-                Some(ArrayKind::Inputs(variables)) => variables.len(),
-                _ => 0,
-            };
-            given = [g.ns, n_inputs];
+            if let Some(ArrayKind::Inputs(variables)) = inputs {
+                given[1] = variables.len();
+            }
+            given[0] = g.ns;
             results = g.ns + g.no;
-            let count = |n: usize| c_int::try_from(n).unwrap_or(c_int::MAX);
-            let [u, y, x, ic, xd, icd] = [g.u, g.y, g.x, g.ic, g.xd, g.icd].map(number);
-            let (ni, no, ns, nd) = (count(n_inputs), count(g.no), count(g.ns), count(g.nd));
-            let hold = g.static_hold.into();
-            Structure::System([ni, no, u, y, ns, x, ic, hold, 0, 0, nd, xd, icd])
+            system(g, given[1])
         }),
         K::Coupler => model.couplers.get(&n).map(|c| {
             given[0] = c.joints.len();
-            results = Partials(given[0]).len();
+            results = Partials(given[0]).count();
             coupler(model, c)
         }),
         K::Curve => model.curves.get(&n).map(|c| {
@@ -101,6 +96,15 @@ pub fn asker(model: &Model, element: ElementId, form: Form) -> Asker {
         given,
         results,
     }
+}
+
+/// Describes a GSE.
+fn system(g: &cognate::model::GeneralSystem, n_inputs: usize) -> Structure {
+    let [ni, no, ns, nd] =
+        [n_inputs, g.no, g.ns, g.nd].map(|n| c_int::try_from(n).unwrap_or(c_int::MAX));
+    let [u, y, x, ic, xd, icd] = [g.u, g.y, g.x, g.ic, g.xd, g.icd].map(number);
+    let hold = g.static_hold.into();
+    Structure::System([ni, no, u, y, ns, x, ic, hold, 0, 0, nd, xd, icd])
 }
 
 /// Describes a COUPLER.

@@ -147,7 +147,7 @@ const LEAST_SLIP: f64 = 1e-6;
 /// One call at a time: what is compiled from Fortran keeps numbers between its calls.
 static CALL: Mutex<()> = Mutex::new(());
 
-/// What the calls of a routine have left beside its results.
+/// Outcome of the calls of a routine, beside its results.
 pub struct Done {
     /// what it has asked and said
     pub asked: Asked,

@@ -1,4 +1,4 @@
-//! `--routines`: shared libraries, and files of Python, whose routines compute what `USER(…)` stands
+//! `--routines`: shared libraries and files of Python whose routines compute what `USER(…)` stands
 //! for.
 //!
 //! They are loaded because the option says so, and never because a file does: opening somebody

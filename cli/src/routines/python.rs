@@ -14,6 +14,7 @@
 //! ```
 
 use super::forms::{Ask, Asker, Flag, Moment};
+use cognate::diagnostic::counted;
 use cognate::internals::system::asked;
 use std::io::{BufReader, BufWriter, ErrorKind, Read, Write};
 use std::path::Path;
@@ -63,7 +64,7 @@ impl Loaded {
     /// Starts a Python and has it load a file, which runs its code.
     ///
     /// # Errors
-    /// What is wrong, and advice where there is any.
+    /// The mistake, and advice where there is any.
     pub fn open(path: &Path) -> Result<Self, (String, Option<String>)> {
         let program = program();
         let child = Command::new(&program)
@@ -133,12 +134,9 @@ impl Routine {
                 out[..1].copy_from_slice(&numbers);
             }
             Ok(numbers) => {
-                let (n, needed) = (numbers.len(), out.len());
-                let name = &self.name;
-                asked::note(
-                    &format!("{name} returns {n} numbers, {needed} are needed"),
-                    true,
-                );
+                let found = counted(numbers.len(), "number");
+                let text = format!("{} returns {found}; it needs {}", self.name, out.len());
+                asked::note(&text, true);
             }
             Err(text) => asked::note(&text, true),
         }
@@ -248,8 +246,8 @@ fn put_text(frame: &mut Vec<u8>, text: &str) {
     frame.extend(text.as_bytes());
 }
 
-/// Puts the numbers of USER and the arguments behind the element, in the order of the C convention without counts: flags
-/// (`b`), whole numbers (`i`), numbers (`d`), lists (`v`).
+/// Puts the numbers of USER and the arguments behind the element, in the order of the C convention
+/// without counts: flags (`b`), whole numbers (`i`), numbers (`d`), lists (`v`).
 fn put_arguments(frame: &mut Vec<u8>, at: Moment<'_>, ask: &Ask<'_>) {
     let mut put = |kind: u8, bytes: &[u8]| {
         frame.push(kind);

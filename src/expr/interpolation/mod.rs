@@ -4,7 +4,7 @@
 //! formula, `bindings.rs` finds them for a call.
 
 mod bindings;
-mod computed;
+pub(crate) mod computed;
 mod data;
 
 pub use bindings::{Bindings, Bound};
