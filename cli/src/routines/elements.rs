@@ -80,10 +80,7 @@ pub fn asker(model: &Model, element: ElementId, form: Form) -> Asker {
                 Form::Friction => Slipping::LEN,
                 _ => Pressing::LEN,
             };
-            let both = [&c.i_geometry, &c.j_geometry];
-            let numbers = both.map(|all| all.iter().map(|id| number(Some(*id))).collect());
-            let flips = [0, 1].map(|k| vec![c_int::from(c.flip[k]); both[k].len()]);
-            Structure::Contact(numbers, flips)
+            contact(c)
         }),
         _ => model
             .variables
@@ -96,6 +93,14 @@ pub fn asker(model: &Model, element: ElementId, form: Form) -> Asker {
         given,
         results,
     }
+}
+
+/// Describes a CONTACT.
+fn contact(c: &cognate::model::Contact) -> Structure {
+    let both = [&c.i_geometry, &c.j_geometry];
+    let numbers = both.map(|all| all.iter().map(|id| number(Some(*id))).collect());
+    let flips = [0, 1].map(|k| vec![c_int::from(c.flip[k]); both[k].len()]);
+    Structure::Contact(numbers, flips)
 }
 
 /// Describes a GSE.
