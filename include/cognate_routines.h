@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-/* All structures begin with the number of the element and the numbers of USER. */
+/* Structures begin with the number of the element and the numbers of USER. */
 
 /* SFORCE */
 struct sAdamsSforce {
@@ -117,6 +117,45 @@ struct sAdamsSensor {
     char Logic[2]; /* EQ, GE, LE */
 };
 
+/* COUPLER: T or R for each joint */
+struct sAdamsCoupler {
+    int ID;
+    int NPAR;
+    const double *PAR;
+    int NJOINT;
+    int JOINTS[3];
+    char TYPE[3];
+};
+
+/* CURVE */
+struct sAdamsCurve {
+    int ID;
+    int NPAR;
+    const double *PAR;
+    int CLOSED;
+    int ORDER;
+    double MINPAR;
+    double MAXPAR;
+};
+
+/* CONTACT: the numbers of its GRAPHICS, and whether each is turned inside out */
+struct sAdamsContact {
+    int ID;
+    int nIGEOM;
+    int nJGEOM;
+    int *IGEOM;
+    int *JGEOM;
+    int *IFLIP_GEOM;
+    int *JFLIP_GEOM;
+};
+
+/* A contact with the numbers of USER: this one alone does not begin with them. */
+struct sAdamsContactFriction {
+    struct sAdamsContact contact;
+    int NPAR;
+    const double *PAR;
+};
+
 /* GSE: numbers of its arrays, and how many inputs, outputs and states it has */
 struct sAdamsGSE {
     int ID;
@@ -171,6 +210,34 @@ typedef void adams_c_Sensub(const struct sAdamsSensor *sensor, double TIME, int 
 typedef void adams_c_Gsesub(const struct sAdamsGSE *gse, double TIME, int DFLAG, int IFLAG,
                             int NSTATE, const double *STATES, int NINPUT, const double *INPUTS,
                             int NOUTPUT, double *STATED, double *OUTPUT);
+
+/* what is zero, of the displacements of two or three joints; it asks for nothing */
+typedef void adams_c_Cousub(const struct sAdamsCoupler *coupler, double TIME, const double *DISP,
+                            int IFLAG, double *PHI);
+/* its partial derivatives, one for each displacement */
+typedef adams_c_Cousub adams_c_Couxx;
+/* its second ones, row by row, one for each pair of displacements */
+typedef adams_c_Cousub adams_c_Couxx2;
+/* x, y, z for IORD 0, their first and second derivative for 1 and 2; it asks for nothing */
+typedef void adams_c_Cursub(const struct sAdamsCurve *curve, double ALPHA, int IORD, int IFLAG,
+                            double *VALUES);
+/*
+ * The force along the normal, in RESULT[0]: positive pushes. LOCI and NI are the point and the
+ * outward normal of I's solid in the frame of its marker, LOCJ and NJ those of J's; GAP is
+ * negative. GAPDOTDOT and AREA are 0.
+ */
+typedef void adams_c_Cnfsub(const struct sAdamsContactFriction *contact, double TIME,
+                            const double *LOCI, const double *NI, const double *LOCJ,
+                            const double *NJ, double GAP, double GAPDOT, double GAPDOTDOT,
+                            double AREA, int DFLAG, int IFLAG, double *RESULT);
+/*
+ * The friction on I's solid along its slip, in RESULT[0]: negative brakes. XDOT[0] is the speed of
+ * the slip; the rest of XDOT, X and AREA are 0.
+ */
+typedef void adams_c_Cffsub(const struct sAdamsContactFriction *contact, double TIME,
+                            const double *LOCI, const double *LOCJ, const double *X,
+                            const double *XDOT, double NFORCE, double AREA, int DFLAG, int IFLAG,
+                            double *RESULT);
 
 /*
  * What a routine may call. `errflg` becomes 1 where there is no such function.

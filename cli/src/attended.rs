@@ -78,9 +78,6 @@ impl Attended<'_> {
         };
         let outcome = obey(session, steps, begin, &mut terminal);
         progress.borrow().done();
-        match self.mistake.take() {
-            Some(mistake) => Err(mistake.into()),
-            None => outcome,
-        }
+        self.mistake.before(outcome)
     }
 }

@@ -55,6 +55,9 @@ mod render;
 mod repl;
 mod report;
 mod response;
+#[cfg(not(all(unix, feature = "routines")))]
+#[path = "no_routines.rs"]
+mod routines;
 #[cfg(all(unix, feature = "routines"))]
 mod routines;
 mod run;

@@ -48,7 +48,6 @@ pub struct Args {
     writing: WritingArgs,
     #[command(flatten)]
     unsolved: UnsolvedArgs,
-    #[cfg(all(unix, feature = "routines"))]
     #[command(flatten)]
     routines: super::routines::RoutineArgs,
     /// Print everything as JSON
@@ -90,14 +89,13 @@ pub fn run(args: &Args) -> Outcome {
         .collect();
     let dataset = reading.dataset;
     let in_model = |errors| Failure::in_model(&dataset, errors);
-    #[cfg(all(unix, feature = "routines"))]
     let mistake = (args.routines).compute(&mut session, &dataset, args.unsolved.zero_user)?;
-    let mut status = obey(&mut session, &steps, |_, _| (), &mut Quiet).map_err(in_model)?;
+    let done = obey(&mut session, &steps, |_, _| (), &mut Quiet);
+    let mut status = mistake.before(done).map_err(in_model)?;
     if args.settle && status == Status::Completed {
         let now = session.time();
-        status = session
-            .simulate(Analysis::Static, now, 1, &mut Quiet)
-            .map_err(in_model)?;
+        let done = session.simulate(Analysis::Static, now, 1, &mut Quiet);
+        status = mistake.before(done).map_err(in_model)?;
     }
     if status != Status::Completed {
         remark(&session.run.record.stop_reason);
@@ -117,11 +115,8 @@ pub fn run(args: &Args) -> Outcome {
         no_damping: args.no_damping,
         shapes: None,
     };
-    let found = session.linearize(&wanted).map_err(in_model)?;
-    #[cfg(all(unix, feature = "routines"))]
-    if let Some(mistake) = mistake.take() {
-        return Err(in_model(mistake.into()));
-    }
+    let found = session.linearize(&wanted);
+    let found = mistake.before(found).map_err(in_model)?;
     let warnings = summary::warnings(&session.run.record.warnings);
     if args.json {
         let mut all = found.json();

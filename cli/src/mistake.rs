@@ -1,6 +1,6 @@
 //! The first mistake of code of the user's that a run calls: it ends the run.
 
-use cognate::diagnostic::Diagnostic;
+use cognate::diagnostic::{Diagnostic, Error};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The first mistake of a routine, which ends the run.
@@ -21,8 +21,16 @@ impl Mistake {
         kept.is_some()
     }
 
-    /// Returns it.
-    pub fn take(&self) -> Option<Diagnostic> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    /// Returns it as the error that has come before whatever else has happened; without one, what
+    /// has happened.
+    ///
+    /// # Errors
+    /// It, and those of the outcome.
+    pub fn before<T>(&self, outcome: Result<T, Error>) -> Result<T, Error> {
+        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
+        match kept {
+            Some(mistake) => Err(mistake.into()),
+            None => outcome,
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! A model and a run of it, for pictures: solved now, or read from files of results.
 
 use super::arguments::{KindName, SpanArgs, UnsolvedArgs};
+use super::routines::RoutineArgs;
 use super::run::{self, Single};
 use super::setup::Asked;
 use super::{Failure, complain_in_files, interrupt, piped, recorded, remark};
@@ -29,6 +30,8 @@ pub struct Source {
     pub span: SpanArgs,
     #[command(flatten)]
     pub unsolved: UnsolvedArgs,
+    #[command(flatten)]
+    routines: RoutineArgs,
 }
 
 /// Distances that a picture shows.
@@ -135,13 +138,11 @@ impl Source {
             .collect();
         session.run.record.model = disk::text(&self.file);
         let dataset = job.reading.dataset;
-        let status = obey(
-            &mut session,
-            &job.steps,
-            |_, _| (),
-            &mut interrupt::Listener,
-        )
-        .map_err(|errors| Failure::in_model(&dataset, errors))?;
+        let zero_user = self.unsolved.zero_user;
+        let mistake = (self.routines).compute(&mut session, &dataset, zero_user)?;
+        let listener = &mut interrupt::Listener;
+        let outcome = obey(&mut session, &job.steps, |_, _| (), listener);
+        let status = (mistake.before(outcome)).map_err(|e| Failure::in_model(&dataset, e))?;
         if status != Status::Completed {
             remark(&session.run.record.stop_reason);
             complain_in_files(&session.model.doubts());

@@ -69,7 +69,6 @@ pub struct Args {
     repeat: usize,
     #[command(flatten)]
     unsolved: UnsolvedArgs,
-    #[cfg(all(unix, feature = "routines"))]
     #[command(flatten)]
     routines: super::routines::RoutineArgs,
     #[command(flatten)]
@@ -142,7 +141,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     check_columns(args, &model, &steps)?;
     let name = args.name.as_ref().unwrap_or(&job.base);
     let mut session = open(args, (model, is_as_read), name);
-    let mistake = routines(args, &mut session, &dataset)?;
+    let mistake = (args.routines).compute(&mut session, &dataset, args.unsolved.zero_user)?;
     let seconds = &mut session.run.record.seconds;
     seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;
@@ -424,19 +423,6 @@ fn attended<'a>(
         tables,
         guard,
         mistake,
-    }
-}
-
-/// Has the routines of libraries compute what USER stands for, where the command line gives any.
-fn routines(args: &Args, session: &mut Session, dataset: &Dataset) -> Result<Mistake, Failure> {
-    #[cfg(all(unix, feature = "routines"))]
-    return args
-        .routines
-        .compute(session, dataset, args.unsolved.zero_user);
-    #[cfg(not(all(unix, feature = "routines")))]
-    {
-        let _ = (args, session, dataset);
-        Ok(Mistake::default())
     }
 }
 

@@ -1,10 +1,12 @@
 //! `cognate sweep`: one model many times, and a table of what came of it.
 
 use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, threads};
+use super::mistake::Mistake;
 use super::progress::Progress;
 use super::recorded;
 use super::render::Sources;
-use super::run::{self, Single};
+use super::routines::RoutineArgs;
+use super::run::{self, Job, Single};
 use super::table::Table as Text;
 use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, interrupt, piped, remark, say, width};
@@ -73,18 +75,20 @@ pub struct Args {
     #[command(flatten)]
     unsolved: UnsolvedArgs,
     #[command(flatten)]
+    routines: RoutineArgs,
+    #[command(flatten)]
     limits: LimitArgs,
     /// Say nothing but mistakes
     #[arg(long)]
     quiet: bool,
 }
 
-/// Lets Ctrl-C end a sweep.
-struct Terminal;
+/// Lets Ctrl-C end a sweep, and the mistake of a routine.
+struct Terminal<'a>(&'a Mistake);
 
-impl Follow for Terminal {
+impl Follow for Terminal<'_> {
     fn interrupted(&self) -> bool {
-        interrupt::requested()
+        interrupt::requested() || self.0.is_there()
     }
 }
 
@@ -96,7 +100,9 @@ impl Follow for Terminal {
 pub fn run(args: &Args) -> Outcome {
     interrupt::install_for_run();
     let (out, format) = table_path(args)?;
-    let (mut sweep, base) = open(args)?;
+    let (mut sweep, Job { base, reading, .. }) = open(args)?;
+    let zero_user = args.unsolved.zero_user;
+    let mistake = (args.routines).compute_in(&mut sweep, &reading, zero_user)?;
     let points = prepare(args, &mut sweep)?;
     let out = out.unwrap_or_else(|| disk::path(format!("{base}_sweep.csv")));
     if let Some(file) = &format {
@@ -117,13 +123,13 @@ pub fn run(args: &Args) -> Outcome {
     let threads = threads(args.threads);
     let progress = Progress::new(args.quiet, 0.0, points.len() as f64);
     let mut done = table.n_found();
-    let outcome = sweep.run(&points, &missing, threads, &Terminal, |row| {
+    let outcome = sweep.run(&points, &missing, threads, &Terminal(&mistake), |row| {
         done += 1;
         progress.runs(done, points.len());
         table.push(row)
     });
     progress.done();
-    outcome?;
+    (mistake.before(outcome)).map_err(|e| Failure::in_model(&reading.dataset, e))?;
     if interrupt::requested() && done < points.len() {
         let (all, out) = (points.len(), disk::text(&out));
         remark(format!(
@@ -169,9 +175,9 @@ fn table_path(args: &Args) -> Result<(Option<PathBuf>, Option<PathBuf>), Failure
     )))
 }
 
-/// Reads the model and its commands; returns the base of the names of files as well.
-fn open(args: &Args) -> Result<(Sweep, String), Failure> {
-    let job = if run::has_commands(&args.model) {
+/// Reads the model and its commands; returns the job of which the sweep has the commands as well.
+fn open(args: &Args) -> Result<(Sweep, Job), Failure> {
+    let mut job = if run::has_commands(&args.model) {
         args.span.refuse_beside(&args.model)?;
         run::script(&args.model, None)?
     } else {
@@ -186,7 +192,7 @@ fn open(args: &Args) -> Result<(Sweep, String), Failure> {
     if let Err(error) = model.checked() {
         return Err(Failure::in_model(&job.reading.dataset, error));
     }
-    let mut sweep = Sweep::new(model, job.steps);
+    let mut sweep = Sweep::new(model, std::mem::take(&mut job.steps));
     if job.loads.is_none() {
         sweep = sweep.with_design_variables(&job.reading);
     }
@@ -194,7 +200,7 @@ fn open(args: &Args) -> Result<(Sweep, String), Failure> {
     sweep.options = args.limits.given_to(args.unsolved.given_to(options));
     let folder = args.model.parent().map(Path::to_path_buf);
     sweep.folders.extend(folder);
-    Ok((sweep, job.base))
+    Ok((sweep, job))
 }
 
 /// Gives a sweep its parameters and measures, and returns its points.

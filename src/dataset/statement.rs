@@ -708,8 +708,10 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "IFLIP" (flip[0]);
         field "JFLIP" (flip[1]);
         field "AUGMENTED_LAGRANGIAN_FORMULATION" (augmented_lagrangian);
-        own "FUNCTION" (Kind::Formula, |c, v| { c.law = ContactLaw::User; c.function.put(v) }, |c| c.function.written()).group("law");
-        lens "ROUTINE" (Routine, function);
+        own "FUNCTION|NORMAL_FUNCTION" (Kind::Formula, |c, v| { c.law = ContactLaw::User; c.function.put(v) }, |c| c.function.written()).group("law");
+        lens "ROUTINE|NORMAL_ROUTINE" (Routine, function);
+        field "FRICTION_FUNCTION" (friction_function);
+        lens "FRICTION_ROUTINE" (Routine, friction_function);
     }),
     numbered!(Friction, frictions: Friction, nothing, {
         field "JOINT" (joint).required();

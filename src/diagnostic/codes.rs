@@ -651,7 +651,7 @@ has no direction.
         explanation: "\
 A CURVE needs a MATRIX in the dataset with one row x, y, z for each point: at least four, neighbours apart, the last like the
 first where it is CLOSED. Through points the order is 4 (cubic) or 2 (straight lines); for control points it is 2 to 10.
-FUNCTION=USER needs a routine that is not part of the dataset: tabulate the curve in a MATRIX.
+FUNCTION=USER needs a routine that is not part of the dataset: load it (--routines), or tabulate the curve in a MATRIX.
 
     CURVE/1, CLOSED, ORDER=4, MATRIX=1, CURVE_POINTS",
     },

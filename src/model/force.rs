@@ -349,8 +349,10 @@ pub struct Contact {
     pub flip: [bool; 2],
     /// AUGMENTED_LAGRANGIAN_FORMULATION
     pub augmented_lagrangian: bool,
-    /// FUNCTION=USER(…)
+    /// FUNCTION=USER(…): the force along the normal
     pub function: Option<Formula>,
+    /// FRICTION_FUNCTION=USER(…): the force across it
+    pub friction_function: Option<Formula>,
 }
 
 /// An argument that the law IMPACT of a CONTACT needs.
@@ -412,7 +414,11 @@ impl Element for Contact {
         all
     }
     fn formulas(&self) -> Vec<(&'static str, &Formula)> {
-        self.function.iter().map(|f| ("FUNCTION", f)).collect()
+        let normal = self.function.iter().map(|f| ("FUNCTION", f));
+        let friction = self.friction_function.iter();
+        normal
+            .chain(friction.map(|f| ("FRICTION_FUNCTION", f)))
+            .collect()
     }
 }
 

@@ -93,6 +93,14 @@ impl Formula {
         Self::unplaced(Text::from(text.into()))
     }
 
+    /// The numbers of `USER(…)`; none of an expression.
+    pub(crate) fn user_numbers(&self) -> &[f64] {
+        match self {
+            Formula::User { constants, .. } => constants,
+            Formula::Expression { .. } => &[],
+        }
+    }
+
     fn unplaced(text: Text) -> Self {
         Formula::Expression {
             text,

@@ -66,6 +66,23 @@ impl Table for Straight {
     }
 }
 
+/// A table over a range of its own, from −1 to 1.
+#[derive(Debug)]
+struct Ranged {
+    table: Arc<dyn Table>,
+    low: f64,
+    high: f64,
+}
+
+impl Table for Ranged {
+    fn at(&self, x: f64, order: u32) -> f64 {
+        let half = 0.5 * (self.high - self.low);
+        // the ends are those of the range, whatever rounding says
+        let inside = (self.low + (x + 1.0) * half).clamp(self.low, self.high);
+        self.table.at(inside, order) * half.powi(order as i32)
+    }
+}
+
 /// A table repeated with period 2.
 #[derive(Debug)]
 struct Around(Arc<dyn Table>);
@@ -80,17 +97,30 @@ impl Path {
     /// Builds the path of a curve, with its extension beyond its ends.
     pub fn new(curve: &Curve) -> Self {
         let closed = curve.is_closed();
+        let [low, high] = curve.range();
+        let is_usual = [low, high] == [-1.0, 1.0];
         let beyond = |t: &Arc<dyn Table>| -> Arc<dyn Table> {
+            let table = match is_usual {
+                true => t.clone(),
+                false => Arc::new(Ranged {
+                    table: t.clone(),
+                    low,
+                    high,
+                }),
+            };
             if closed {
-                Arc::new(Around(t.clone()))
+                Arc::new(Around(table))
             } else {
-                Arc::new(Straight(t.clone()))
+                Arc::new(Straight(table))
             }
         };
         let mut path = Self {
             tables: [0, 1, 2].map(|k| beyond(&curve.components()[k])),
             closed,
-            knots: curve.knots().to_vec(),
+            knots: match is_usual {
+                true => curve.knots().to_vec(),
+                false => vec![-1.0, 1.0],
+            },
             away: Vec3::axis(2),
             length: 0.0,
             height: 0.0,

@@ -6,7 +6,7 @@ use super::configuration::{ALIGNMENT, LARGEST_ALIGNMENT};
 use super::contacts::Shell;
 use super::coordinate_sums::{self, Draws, Reading};
 use super::equations::Unsupported;
-use super::external_inputs::HookName;
+use super::external_inputs::Hook;
 use super::history::AngleId;
 use super::left_out::LeftOut;
 use super::loops::{self, Key};
@@ -40,7 +40,7 @@ pub struct Options {
     /// kinds of elements that are left out where they are not solved
     pub skip: BTreeSet<ElementKind>,
     /// closures for `USER(…)`
-    pub hooks: Vec<HookName>,
+    pub hooks: Vec<Hook>,
     /// what `USER(…)` would compute is zero where no closure computes it
     pub zero_user: bool,
     /// VARIABLEs to which numbers from outside are added: inputs of a linear system
@@ -58,7 +58,7 @@ impl Scene {
     /// # Errors
     /// Everything that keeps the model from being solved, all at once.
     pub fn compile(model: &Model, options: &Options) -> Result<Arc<Scene>, Error> {
-        let mut left_out = LeftOut::of(model, &options.skip, options.zero_user);
+        let mut left_out = LeftOut::of(model, &options.skip, &options.hooks, options.zero_user);
         let without = (!left_out.elements.is_empty()).then(|| {
             let mut model = model.clone();
             model.inactive.extend(left_out.elements.iter().copied());
@@ -66,7 +66,7 @@ impl Scene {
         });
         let model = without.as_ref().unwrap_or(model);
         let mut c = Compiler::new(model);
-        let (bindings, unusable) = super::formula::bindings(model);
+        let (bindings, unusable) = super::formula::bindings(model, &options.hooks);
         let mut b = Builder {
             scene: Scene::default(),
             model,
@@ -121,6 +121,7 @@ impl Scene {
             b.loops(&mut c);
             b.part_downstream();
             b.natural_sizes();
+            b.check_partials(&mut c);
         }
         if c.errors.is_empty() {
             Ok(Arc::new(b.scene))
@@ -185,7 +186,7 @@ pub(super) struct Builder<'m> {
     pub(super) bindings: Bindings,
     /// splines that cannot be used: told when something asks for one
     pub(super) unusable: Vec<Diagnostic>,
-    pub(super) hooks: &'m [HookName],
+    pub(super) hooks: &'m [Hook],
     pub(super) zero_user: bool,
     pub(super) shells: &'m BTreeMap<u32, Result<Shell, String>>,
     /// expressions that differ in their numbers and in what they ask for share their code

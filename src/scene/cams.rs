@@ -98,7 +98,7 @@ impl Builder<'_> {
     }
 
     pub(super) fn path(&self, c: &mut Compiler, curve: u32) -> Option<Path> {
-        match super::formula::curve(self.model, curve) {
+        match super::formula::curve(self.model, self.hooks, curve) {
             Ok(curve) => Some(Path::new(&curve)),
             Err(why) => {
                 if !c.errors.contains(&why) {

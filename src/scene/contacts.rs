@@ -1,19 +1,21 @@
 //! CONTACT statements: which solids, which formula for each pair, which law.
 
+use super::asker::Asker;
 use super::build::Builder;
 use super::compile::Compiler;
-use super::external_inputs::{ExternalInput, HookKind, SceneHook};
-use super::forces::{ForceLaw, Touching};
+use super::external_inputs::{HookKind, closure_of};
+use super::forces::{ContactForce, ForceLaw, Touched, Touching};
 use super::left_out::Reason;
 use super::tunnelling::ThicknessBound;
 use super::untouchable::{NoPair, Untouchable};
 use crate::diagnostic::{Cause, Diagnostic, counted};
-use crate::model::{Contact, ContactLaw, CoulombFriction, ElementId, ElementKind, Shape};
+use crate::model::{Contact, ContactLaw, CoulombFriction, Element, ElementId, ElementKind, Shape};
 use crate::physics::contact::extent::Extent;
 use crate::physics::contact::law::{Coulomb, Law, Normal};
 use crate::physics::contact::outline::{Outline, Rim};
 use crate::physics::contact::{Pair, Question, Solid, TOUCH_NUMBERS};
 use crate::scalar::Scalar;
+use crate::space::MarkerState;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -254,19 +256,9 @@ impl Builder<'_> {
         let model = self.model;
         for (id, contact) in model.active(ElementKind::Contact, &model.contacts) {
             let name = ElementKind::Contact.id(id);
-            if let (ContactLaw::User, Some(_)) = (contact.law, &contact.function) {
-                // a routine of contacts is called for incidents that only its own solver finds
-                if !self.zero_user {
-                    let d =
-                        Diagnostic::error(Cause::UserRoutine, "a CONTACT by USER is not solved");
-                    c.errors.push(d.element(name).help(
-                        "give it an IMPACT or POISSON law, or take what USER would compute as zero (--zero-user)",
-                    ));
-                } else {
-                    self.leave_out(name, &Reason::Routine);
-                }
+            let Ok(closures) = self.closures(c, name, contact) else {
                 continue;
-            }
+            };
             match self.couples(c, contact) {
                 Ok(couples) => {
                     let law = match self.law(name, contact) {
@@ -295,7 +287,12 @@ impl Builder<'_> {
                                 None => continue,
                             },
                         };
-                        let law = ForceLaw::Contact(Box::new((touching, law)));
+                        let (Some(i), Some(j)) = (i, j) else {
+                            continue;
+                        };
+                        let both = (touching, law);
+                        let force = self.pressed(c, (name, contact), [i, j], both, closures);
+                        let law = ForceLaw::Contact(Box::new(force));
                         self.between(c, name, (markers[0], markers[1]), law);
                     }
                 }
@@ -339,19 +336,90 @@ impl Builder<'_> {
                 return None;
             }
         }
-        let (hook, n) = (self.scene.hooks.len(), question.touches() * TOUCH_NUMBERS);
-        let places: Vec<usize> = (0..n)
-            .map(|k| self.supply(ExternalInput::Hook(hook, k)))
-            .collect();
-        self.scene.hooks.push(SceneHook {
-            kind: HookKind::Touches { question, markers },
-            element: name,
-            constants: Vec::new(),
-            n,
-            place: places[0],
-            output_only: false,
-        });
-        Some(Touching::Query(places[0]..places[0] + n))
+        let n = question.touches() * TOUCH_NUMBERS;
+        let kind = HookKind::Touches { question, markers };
+        Some(Touching::Query(self.asked_of(kind, name, &[], n)))
+    }
+
+    /// Closures that compute forces of a contact: along the normal, and across it.
+    ///
+    /// # Errors
+    /// That there is none for a USER; it has been said, or the contact is left out.
+    fn closures(
+        &mut self,
+        c: &mut Compiler,
+        name: ElementId,
+        contact: &Contact,
+    ) -> Result<[Option<usize>; 2], ()> {
+        let users = contact.formulas();
+        let mut found = [None; 2];
+        for (argument, user) in users {
+            let Some(closure) = closure_of(self.hooks, name, argument, user) else {
+                if self.zero_user {
+                    self.leave_out(name, &Reason::Routine);
+                    return Err(());
+                }
+                let what =
+                    format!("{argument}=USER needs a routine that is not part of the dataset");
+                let d = Diagnostic::error(Cause::UserRoutine, what);
+                c.errors.push(d.element(name).help(
+                    "load the library that has it (--routines), give it an IMPACT or POISSON law, or leave it out with whatever else USER would compute (--zero-user)",
+                ));
+                return Err(());
+            };
+            found[usize::from(argument != "FUNCTION")] = Some(closure);
+        }
+        Ok(found)
+    }
+
+    /// The force of a couple of bodies: its law, and the numbers that closures compute instead.
+    fn pressed(
+        &mut self,
+        c: &mut Compiler,
+        (name, contact): (ElementId, &Contact),
+        markers: [usize; 2],
+        (touching, law): (Touching, Law),
+        closures: [Option<usize>; 2],
+    ) -> ContactForce {
+        let touches = match &touching {
+            Touching::Query(places) => places.len() / TOUCH_NUMBERS,
+            Touching::Formula(pair) => {
+                let [i, j] = markers.map(|m| MarkerState::at_rest(self.scene.drawn(m)));
+                pair.touches(&i, &j).len()
+            }
+        };
+        let mut force = ContactForce {
+            touching,
+            law,
+            normal: 0..0,
+            friction: 0..0,
+        };
+        let users = [&contact.function, &contact.friction_function];
+        for (slips, closure) in [false, true].into_iter().zip(closures) {
+            let (Some(closure), Some(user)) = (closure, users[usize::from(slips)]) else {
+                continue;
+            };
+            let argument = if slips {
+                "FRICTION_FUNCTION"
+            } else {
+                "FUNCTION"
+            };
+            let inputs = self.inputs_of(c, &Asker::argument(name, argument), closure);
+            let kind = HookKind::Touched(Box::new(Touched {
+                closure,
+                inputs,
+                markers,
+                force: force.clone(),
+                slips,
+            }));
+            let n = if slips { 3 * touches } else { touches };
+            let places = self.asked_of(kind, name, user.user_numbers(), n);
+            match slips {
+                true => force.friction = places,
+                false => force.normal = places,
+            }
+        }
+        force
     }
 
     /// Tells what of a shell is not as it is drawn.

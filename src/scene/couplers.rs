@@ -3,10 +3,14 @@
 
 use super::build::Builder;
 use super::compile::Compiler;
+use super::configuration::Configuration;
 use super::coordinate_sums::{Draws, displacement};
+use super::coupled::Coupled;
+use super::equations::Equations;
+use super::external_inputs::{HookKind, closure_for};
 use super::{ConstraintElement, Displacement, JointVariable, Row, RowKind, Sum};
-use crate::diagnostic::Diagnostic;
-use crate::model::{ElementId, ElementKind, Joint, MarkerOwner};
+use crate::diagnostic::{Cause, Diagnostic};
+use crate::model::{ElementId, ElementKind, Formula, Joint, MarkerOwner};
 use crate::physics::coupler::{Gauge, GearedJoint, gear_factors};
 use crate::physics::joint::{Displacements, Relation, Tie, Unclear};
 use crate::space::{Frame, Mat3, Vec3};
@@ -38,10 +42,6 @@ impl Builder<'_> {
         }
         for (id, coupler) in model.active(ElementKind::Coupler, &model.couplers) {
             let name = ElementKind::Coupler.id(id);
-            if coupler.user.is_some() {
-                c.error(name, "FUNCTION=USER needs a routine that is not part of the dataset: give SCALES, or write the relation as a GCON");
-                continue;
-            }
             let joints = coupler.joints.iter().zip(&coupler.rotational);
             let displacements: Option<Vec<Displacement>> = joints
                 .map(|(&joint, &turn)| self.joint_displacement((c, draws), name, joint, turn))
@@ -50,16 +50,98 @@ impl Builder<'_> {
                 continue;
             };
             let receiver = displacements.first().map(|d| d.i);
-            let sum = Sum {
-                terms: coupler.scales.iter().copied().zip(displacements).collect(),
-                constant: 0.0,
-                held: !strict,
-                contact: None,
+            let sum = match &coupler.user {
+                None => Sum {
+                    terms: coupler.scales.iter().copied().zip(displacements).collect(),
+                    constant: 0.0,
+                    held: !strict,
+                    contact: None,
+                    coupled: None,
+                },
+                Some(user) => match self.coupled(c, name, user, displacements) {
+                    Some(sum) => sum,
+                    None => continue,
+                },
             };
             self.relation(name, None, receiver, receiver, sum);
         }
         for (id, gear) in model.active(ElementKind::Gear, &model.gears) {
             self.gear((c, draws), id, gear.joints, gear.cv);
+        }
+    }
+
+    /// The constraint of a COUPLER that a closure computes; `None`: nothing does, which is said.
+    fn coupled(
+        &mut self,
+        c: &mut Compiler,
+        name: ElementId,
+        user: &Formula,
+        displacements: Vec<Displacement>,
+    ) -> Option<Sum> {
+        let Some(closure) = closure_for(self.hooks, name, user) else {
+            c.error(name, "FUNCTION=USER needs a routine that is not part of the dataset: load the library that has it (--routines), give SCALES, or write the relation as a GCON");
+            return None;
+        };
+        let hook = &self.hooks[closure];
+        if let Some(input) = hook.inputs.first() {
+            let what = format!("its routine reads {input}: it depends on its displacements alone");
+            c.errors
+                .push(Diagnostic::error(Cause::UserRoutine, what).element(name));
+            return None;
+        }
+        let one = |d: &Displacement| match d.gauge.is_angle() {
+            true => 1.0,
+            false => self.scene.length.max(f64::MIN_POSITIVE),
+        };
+        let mut coupled = Coupled {
+            element: name,
+            constants: user.user_numbers().to_vec(),
+            units: displacements.iter().map(one).collect(),
+            displacements: displacements.clone(),
+            places: 0..0,
+            scale: 1.0,
+            law: hook.law.clone(),
+        };
+        let kind = HookKind::Coupled(Box::new(coupled.clone()));
+        coupled.places = self.asked_of(kind, name, &coupled.constants, coupled.numbers());
+        Some(Sum {
+            terms: displacements.into_iter().map(|d| (1.0, d)).collect(),
+            constant: 0.0,
+            held: false,
+            contact: None,
+            coupled: Some(Box::new(coupled)),
+        })
+    }
+
+    /// Compares the partial derivatives that routines of COUPLERs give with differences, where the
+    /// dataset has the parts.
+    pub(super) fn check_partials(&self, c: &mut Compiler) {
+        let scene = &self.scene;
+        let all = scene.rows.iter().filter_map(|row| match &row.kind {
+            RowKind::Displacements(sum) => sum.coupled.as_deref(),
+            _ => None,
+        });
+        let all: Vec<&Coupled> = all.collect();
+        if all.is_empty() {
+            return;
+        }
+        let mut numbers = vec![0.0; scene.layout.len()];
+        numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
+        let undecided = Configuration::new(scene);
+        let at = Equations::<f64>::new(scene.within(&undecided), &numbers);
+        for coupled in all {
+            let x = coupled.displacements.iter();
+            let x: Vec<f64> = x.map(|d| at.displacement(d).value).chain([0.0]).collect();
+            let Some((along, [told, found])) = coupled.contradicted(&x) else {
+                continue;
+            };
+            let along: Vec<String> = along.iter().map(|k| (k + 1).to_string()).collect();
+            let what = format!(
+                "its routine gives {told:.6} as the partial derivative along displacement {}, differences of its value give {found:.6}",
+                along.join(" and ")
+            );
+            let error = Diagnostic::error(Cause::UserRoutine, what).element(coupled.element);
+            c.errors.push(error.help("COUXX has the first and COUXX2 the second partial derivatives of what COUSUB computes; without them they are found by differences"));
         }
     }
 
@@ -115,6 +197,7 @@ impl Builder<'_> {
             constant: 0.0,
             held: !strict,
             contact: None,
+            coupled: None,
         };
         self.relation(name, Some((i, j)), Some(i), Some(i), sum);
     }
@@ -187,6 +270,7 @@ impl Builder<'_> {
             constant: 0.0,
             held: true,
             contact: Some((cv_marker, [first.i, second.i])),
+            coupled: None,
         };
         self.relation(name, None, Some(first.i), Some(first.j), sum);
     }

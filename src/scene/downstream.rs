@@ -191,9 +191,12 @@ fn upstream(scene: &Scene) -> Search<'_> {
         read.into_iter().for_each(|f| search.reach(f));
     }
     for hook in scene.hooks.iter().filter(|hook| !hook.output_only) {
-        if let HookKind::User { inputs, .. } = &hook.kind {
-            inputs.iter().for_each(|&f| search.reach(f));
-        }
+        let inputs = match &hook.kind {
+            HookKind::User { inputs, .. } => inputs,
+            HookKind::Touched(touched) => &touched.inputs,
+            HookKind::Coupled(_) | HookKind::Touches { .. } => continue,
+        };
+        inputs.iter().for_each(|&f| search.reach(f));
     }
     for unknown in &scene.loops {
         match unknown.key {

@@ -5,9 +5,13 @@
 //! computes them from what stands before them, so that the programs need not know where they come
 //! from.
 
+use super::coupled::Coupled;
+use super::forces::Touched;
 use super::history::DelayId;
 use crate::model::{Comparison, ElementId, Formula};
 use crate::physics::contact::Question;
+use std::fmt;
+use std::sync::Arc;
 
 /// One number from outside, in the order of the places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,28 +94,88 @@ pub struct SceneDelay {
     pub history: usize,
 }
 
-/// A closure of the user's that the library was given: what it is called for, and which expressions
-/// it reads.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct HookName {
-    /// an element ("SFORCE/3"), the text of ROUTINE, or the first number of USER
+/// The arguments of a closure.
+#[derive(Clone, Copy, Debug)]
+pub struct Call<'a> {
+    /// TIME
+    pub time: f64,
+    /// the element that asks
+    pub element: ElementId,
+    /// the numbers of `USER(…)`
+    pub constants: &'a [f64],
+    /// values of the expressions that the closure was registered with; for a GSE followed by its
+    /// states, inputs and discrete states, for a COUPLER by its displacements, for a CURVE by its
+    /// parameter and the order of the derivative, for a CONTACT by
+    /// [`Pressing`](crate::physics::contact::Pressing) or
+    /// [`Slipping`](crate::physics::contact::Slipping) of each touch
+    pub values: &'a [f64],
+}
+
+/// A closure: fills in the results, which are zero when it is called.
+///
+/// One number for SFORCE, VARIABLE, DIFF or SENSOR; FX, FY, FZ, TX, TY, TZ for GFORCE, three for
+/// VFORCE and VTORQUE; the value and its first two derivatives in time for MOTION; eight components
+/// for REQUEST; rates of the states, then outputs, then what the discrete states are from the next
+/// sample on, for GSE; x, y, z or a derivative of these for CURVE; for COUPLER
+/// [`Partials`](super::coupled::Partials), which are NaN when it is called; for CONTACT the force
+/// along the normal of each touch, for its FRICTION_FUNCTION x, y, z of each force on I's solid
+/// across the normal.
+pub type Law = dyn Fn(&Call<'_>, &mut [f64]) + Send + Sync;
+
+/// A closure under its name.
+#[derive(Clone)]
+pub struct Hook {
+    /// an element ("SFORCE/3"), also with the argument that is meant ("CONTACT/1
+    /// FRICTION_FUNCTION"), the text of ROUTINE, or the first number of USER
     pub name: String,
     /// expressions whose values it is given
     pub inputs: Vec<String>,
+    /// the closure
+    pub law: Arc<Law>,
 }
 
-impl HookName {
-    /// Returns true if it computes this USER of this element.
-    pub fn stands_for(&self, element: ElementId, user: &Formula) -> bool {
+impl Hook {
+    /// Returns true if it computes this USER of this element; `argument`: where it stands.
+    pub fn stands_for(&self, element: ElementId, argument: &str, user: &Formula) -> bool {
         let Formula::User { constants, routine } = user else {
             return false;
         };
-        self.name.eq_ignore_ascii_case(&element.to_string())
+        let is_first =
+            argument != FRICTION_FUNCTION && self.name.eq_ignore_ascii_case(&element.to_string());
+        is_first
+            || (self.name).eq_ignore_ascii_case(&format!("{element} {argument}"))
             || (routine.as_ref()).is_some_and(|r| r.trim().eq_ignore_ascii_case(&self.name))
             || constants
                 .first()
                 .is_some_and(|c| c.to_string() == self.name)
     }
+}
+
+impl fmt::Debug for Hook {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Hook({} of {:?})", self.name, self.inputs)
+    }
+}
+
+/// The argument that no closure computes under the name of its element alone: FUNCTION beside it
+/// has that.
+const FRICTION_FUNCTION: &str = "FRICTION_FUNCTION";
+
+/// Returns the closure that computes FUNCTION=USER of an element: of several the last.
+pub fn closure_for(hooks: &[Hook], element: ElementId, user: &Formula) -> Option<usize> {
+    closure_of(hooks, element, "FUNCTION", user)
+}
+
+/// Returns the closure that computes a USER of an argument of an element: of several the last.
+pub fn closure_of(
+    hooks: &[Hook],
+    element: ElementId,
+    argument: &str,
+    user: &Formula,
+) -> Option<usize> {
+    hooks
+        .iter()
+        .rposition(|h| h.stands_for(element, argument, user))
 }
 
 /// A closure that computes external inputs, and the formulas it is given.
@@ -124,6 +188,11 @@ pub enum HookKind {
         /// what it reads: indices in the formulas
         inputs: Vec<usize>,
     },
+    /// the constraint of a COUPLER and its partial derivatives, in the order of
+    /// [`Partials`](super::coupled::Partials)
+    Coupled(Box<Coupled>),
+    /// forces of a CONTACT where its solids touch
+    Touched(Box<Touched>),
     /// where two solids touch: [`TOUCHES`](crate::physics::contact::TOUCHES) times
     /// [`TOUCH_NUMBERS`](crate::physics::contact::TOUCH_NUMBERS)
     Touches {

@@ -6,7 +6,7 @@ use crate::expr::measures::Measure;
 use crate::model::ElementId;
 use crate::physics::action::{self, ALL_ANGLES, Action, Law};
 use crate::physics::bushing::{self, Bushing};
-use crate::physics::contact::{self, Touch};
+use crate::physics::contact::{self, Outside, Pressing, Slipping, Touch};
 use crate::physics::field::Field;
 use crate::physics::friction::{Friction, Slip};
 use crate::physics::nodal_force::NodalForce;
@@ -41,6 +41,76 @@ pub enum Touching {
     Formula(contact::Pair),
     /// by a query: places of its numbers among those from outside
     Query(Range<usize>),
+}
+
+/// The force between two solids of a CONTACT.
+#[derive(Clone, Debug)]
+pub struct ContactForce {
+    /// where they touch
+    pub touching: Touching,
+    /// what the solids do there, as far as no routine says it
+    pub law: contact::Law,
+    /// places of the forces along the normal among the numbers from outside; none: the law has them
+    pub normal: Range<usize>,
+    /// the same of the forces across it
+    pub friction: Range<usize>,
+}
+
+impl ContactForce {
+    fn action<S: Scalar>(
+        &self,
+        at: &Equations<'_, S>,
+        i: &MarkerState<S>,
+        j: &MarkerState<S>,
+    ) -> Action<S> {
+        let outside = Outside {
+            normal: at.external(self.normal.clone()),
+            friction: at.external(self.friction.clone()),
+        };
+        let touches = self.touching.touches(at, i, j);
+        contact::action(&touches, &self.law, outside, i, j)
+    }
+
+    /// Returns whether the law says what the contact stores: no routine computes the force along
+    /// the normal.
+    fn stores(&self) -> bool {
+        self.normal.is_empty()
+    }
+}
+
+/// A question to a closure of the user's: forces of a CONTACT at its touches.
+#[derive(Clone, Debug)]
+pub struct Touched {
+    /// which: index in [`Options::hooks`](super::build::Options::hooks)
+    pub closure: usize,
+    /// what it reads beside the touches: indices in the formulas
+    pub inputs: Vec<usize>,
+    /// I and J marker
+    pub markers: [usize; 2],
+    /// where the solids touch, and the forces that are known before
+    pub force: ContactForce,
+    /// friction is asked for, rather than the force along the normal
+    pub slips: bool,
+}
+
+impl Touched {
+    /// Returns the numbers that the closure is given.
+    pub fn numbers<S: Scalar>(&self, at: &Equations<'_, S>) -> Vec<S> {
+        let [i, j] = self.markers.map(|m| at.marker(m));
+        let mut all: Vec<S> = self.inputs.iter().map(|&f| at.formula(f)).collect();
+        let known = at.external(self.force.normal.clone());
+        for (k, touch) in self.force.touching.touches(at, &i, &j).iter().enumerate() {
+            let pressing = Pressing::of(touch, &i, &j);
+            if !self.slips {
+                all.extend(pressing.numbers());
+                continue;
+            }
+            let law = || self.force.law.normal.force(touch.depth, -pressing.gap_rate);
+            let normal_force = known.get(k).copied().unwrap_or_else(law);
+            all.extend(Slipping::of(touch, normal_force, &i, &j).numbers());
+        }
+        all
+    }
 }
 
 /// Hands the table of laws that are nothing but their numbers, between two markers, to the macro
@@ -89,7 +159,7 @@ macro_rules! force_laws {
             /// FIELD, BEAM
             Field(Box<Field>),
             /// two solids of a CONTACT, and what they do where they touch
-            Contact(Box<(Touching, contact::Law)>),
+            Contact(Box<ContactForce>),
             /// FRICTION in a joint
             Friction {
                 /// its numbers
@@ -150,8 +220,7 @@ macro_rules! force_laws {
                     $(ForceLaw::$kind(law) => law.action(&i, &j, angle),)*
                     ForceLaw::Field(law) => law.action(&i, &j, angle),
                     ForceLaw::Contact(contact) => {
-                        let (touching, law) = contact.as_ref();
-                        contact::action(&touching.touches(at, &i, &j), law, &i, &j)
+                        contact.action(at, &i, &j)
                     }
                     ForceLaw::Friction { law, joint, creep } => {
                         let pressing = self.pressing(at, law, *joint);
@@ -178,9 +247,7 @@ macro_rules! force_laws {
                     $(ForceLaw::$kind(law) => Some(law.action(&i, &j, angle)),)*
                     ForceLaw::Field(law) => Some(law.action(&i, &j, angle)),
                     ForceLaw::Contact(contact) => {
-                        let (touching, law) = contact.as_ref();
-                        let touches = touching.touches(at, &i, &j);
-                        Some(contact::action(&touches, law, &i, &j))
+                        contact.stores().then(|| contact.action(at, &i, &j))
                     }
                     ForceLaw::Nodal {
                         law,
@@ -211,13 +278,13 @@ impl ForceElement {
         };
         let i = at.marker(self.i);
         let j = self.j.map_or_else(MarkerState::ground, |j| at.marker(j));
-        contact.0.touches(at, &i, &j)
+        contact.touching.touches(at, &i, &j)
     }
 }
 
 impl Touching {
     /// Returns the touches of the solids of I and J.
-    fn touches<S: Scalar>(
+    pub(super) fn touches<S: Scalar>(
         &self,
         at: &Equations<'_, S>,
         i: &MarkerState<S>,

@@ -1,16 +1,17 @@
 //! Expressions of the model as programs: splines and arrays they name are found in the model.
 
+use super::external_inputs::{Call, Hook, closure_for};
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::compile;
 use crate::expr::interpolation::{Bindings, Curve, CurvePoints, Spline};
 use crate::expr::program::Program;
 use crate::expr::spline::{Ends, Extrapolation};
-use crate::model::{ElementKind, Model, Text};
+use crate::model::{ElementId, ElementKind, Formula, Model, Text};
 use std::sync::Arc;
 
 /// The splines of a model, for the expressions that name them; what is wrong with those that cannot
 /// be used.
-pub(crate) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
+pub(crate) fn bindings(model: &Model, hooks: &[Hook]) -> (Bindings, Vec<Diagnostic>) {
     let mut bindings = Bindings::default();
     let mut errors = Vec::new();
     for (&id, s) in &model.splines {
@@ -36,7 +37,7 @@ pub(crate) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
         }
     }
     for &id in model.curves.keys() {
-        match curve(model, id) {
+        match curve(model, hooks, id) {
             Ok(curve) => {
                 bindings.curves.insert(id, curve);
             }
@@ -46,20 +47,19 @@ pub(crate) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
     (bindings, errors)
 }
 
-/// A CURVE of a model.
+/// A CURVE of a model, by a closure where a routine computes it.
 ///
 /// # Errors
 /// Why its data make none.
-pub(crate) fn curve(model: &Model, id: u32) -> Result<Arc<Curve>, Diagnostic> {
+pub(crate) fn curve(model: &Model, hooks: &[Hook], id: u32) -> Result<Arc<Curve>, Diagnostic> {
     let unfit = |what: String| {
         Diagnostic::error(Cause::CurveData, what)
             .element(ElementKind::Curve.id(id))
             .help("give a MATRIX with one row x, y, z for each point")
     };
     let data = (model.curves.get(&id)).ok_or_else(|| unfit("does not exist".into()))?;
-    if data.function.is_some() {
-        let what = "FUNCTION=USER needs a routine that is not part of the dataset";
-        return Err(unfit(what.into()));
+    if let Some(user) = &data.function {
+        return curve_by_closure(data, hooks, (ElementKind::Curve.id(id), user));
     }
     let matrix = data.matrix.and_then(|m| model.matrices.get(&m));
     let matrix = matrix.ok_or_else(|| unfit("has no MATRIX with its points".into()))?;
@@ -82,6 +82,51 @@ pub(crate) fn curve(model: &Model, id: u32) -> Result<Arc<Curve>, Diagnostic> {
     Curve::new(&points, data.closed, order, kind)
         .map(Arc::new)
         .map_err(|why| unfit(why.to_string()))
+}
+
+/// A CURVE that a closure computes.
+fn curve_by_closure(
+    data: &crate::model::Curve,
+    hooks: &[Hook],
+    (element, user): (ElementId, &Formula),
+) -> Result<Arc<Curve>, Diagnostic> {
+    let unfit = |what: String, advice: &str| {
+        let error = Diagnostic::error(Cause::CurveData, what);
+        Err(error.element(element).help(advice))
+    };
+    let Some(closure) = closure_for(hooks, element, user) else {
+        let what = "FUNCTION=USER needs a routine that is not part of the dataset";
+        return unfit(
+            what.into(),
+            "load the library that has it (--routines), or give a MATRIX with one row x, y, z for each point",
+        );
+    };
+    let hook = &hooks[closure];
+    if let Some(input) = hook.inputs.first() {
+        let what = format!("its routine reads {input}: a curve depends on its parameter alone");
+        return unfit(what, "give what it needs as numbers of USER(…)");
+    }
+    let (law, constants) = (hook.law.clone(), user.user_numbers().to_vec());
+    let point = move |parameter: f64, order: u32| {
+        let mut out = [0.0; 3];
+        let call = Call {
+            time: 0.0,
+            element,
+            constants: &constants,
+            values: &[parameter, f64::from(order)],
+        };
+        law(&call, &mut out);
+        out
+    };
+    let range = [data.minpar.unwrap_or(-1.0), data.maxpar.unwrap_or(1.0)];
+    Curve::computed(Arc::new(point), data.closed, range)
+        .map(Arc::new)
+        .or_else(|why| {
+            unfit(
+                why.to_string(),
+                "for IORD 0, 1 and 2 CURSUB returns x, y, z, and their first and second derivatives along ALPHA",
+            )
+        })
 }
 
 /// An expression as programs.

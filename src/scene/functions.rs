@@ -5,11 +5,12 @@ use super::Formula;
 use super::asker::Asker;
 use super::build::Builder;
 use super::compile::Compiler;
-use super::external_inputs::{ExternalInput, HookKind, SceneDelay, SceneHook};
+use super::external_inputs::{ExternalInput, HookKind, SceneDelay, SceneHook, closure_for};
 use super::history::DelayId;
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program};
-use crate::model::{Element, ElementKind, Formula as ModelFormula, RequestKind, Text};
+use crate::model::{Element, ElementId, ElementKind, Formula as ModelFormula, RequestKind, Text};
+use std::ops::Range;
 
 impl Builder<'_> {
     /// Compiles an expression; its index in the scene's formulas.
@@ -114,8 +115,7 @@ impl Builder<'_> {
             return vec![self.formula(c, owner, formula); n];
         };
         let known = owner.owner().and_then(|element| {
-            let mut hooks = self.hooks.iter();
-            let closure = hooks.rposition(|h| h.stands_for(element, formula));
+            let closure = closure_for(self.hooks, element, formula);
             closure.map(|closure| (element, closure))
         });
         let Some((element, closure)) = known else {
@@ -128,26 +128,52 @@ impl Builder<'_> {
             ));
             return vec![usize::MAX; n];
         };
-        let texts = self.hooks[closure].inputs.iter().chain(reads);
-        let mut inputs: Vec<usize> = texts
-            .map(|text| self.compiled(c, owner, &text.as_str().into()))
-            .collect();
+        let mut inputs = self.inputs_of(c, owner, closure);
+        let reads = reads.iter();
+        inputs.extend(reads.map(|text| self.compiled(c, owner, &text.as_str().into())));
         inputs.extend(further);
-        let hook = self.scene.hooks.len();
-        let places: Vec<usize> = (0..n)
-            .map(|k| self.supply(ExternalInput::Hook(hook, k)))
-            .collect();
-        self.scene.hooks.push(SceneHook {
-            kind: HookKind::User { closure, inputs },
-            output_only: element.kind == ElementKind::Request,
-            element,
-            constants: constants.clone(),
-            n,
-            place: places[0],
-        });
+        let kind = HookKind::User { closure, inputs };
+        let places = self.asked_of(kind, element, constants, n);
         let text = format!("USER, {}", self.hooks[closure].name);
         let outside = |place| self.supplied_formula(owner, &text, place);
-        places.into_iter().map(outside).collect()
+        places.map(outside).collect()
+    }
+
+    /// The expressions that a closure was registered with, as formulas.
+    pub(super) fn inputs_of(
+        &mut self,
+        c: &mut Compiler,
+        owner: &Asker,
+        closure: usize,
+    ) -> Vec<usize> {
+        let texts = self.hooks[closure].inputs.iter();
+        texts
+            .map(|text| self.compiled(c, owner, &text.as_str().into()))
+            .collect()
+    }
+
+    /// Places for `n` numbers, at least one, that a closure computes for an element.
+    pub(super) fn asked_of(
+        &mut self,
+        kind: HookKind,
+        element: ElementId,
+        constants: &[f64],
+        n: usize,
+    ) -> Range<usize> {
+        let hook = self.scene.hooks.len();
+        let place = self.scene.external_inputs.len();
+        for k in 0..n {
+            self.supply(ExternalInput::Hook(hook, k));
+        }
+        self.scene.hooks.push(SceneHook {
+            kind,
+            output_only: element.kind == ElementKind::Request,
+            element,
+            constants: constants.to_vec(),
+            n,
+            place,
+        });
+        place..place + n
     }
 
     /// A number from outside as a formula.
@@ -168,7 +194,7 @@ impl Builder<'_> {
                 let asker = Asker::argument(id, argument);
                 let by_user = matches!(formula, ModelFormula::User { .. });
                 let told = match (takes_user, by_user) {
-                    (true, true) if self.hooks.iter().any(|h| h.stands_for(id, formula)) => {
+                    (true, true) if closure_for(self.hooks, id, formula).is_some() => {
                         let all = self.user(c, &asker, formula, 8, &[]);
                         self.scene.requests.insert(n, all);
                         continue;

@@ -109,15 +109,17 @@ impl Builder<'_> {
         }
     }
 
-    /// Finds what counts as one for the expressions of GCON: how much they change as coordinates
-    /// (or velocities) change by one (angles) or by the size of the mechanism (lengths).
+    /// Finds what counts as one for the expressions of GCON and the routines of COUPLER: how much
+    /// they change as coordinates (or velocities) change by one (angles) or by the size of the
+    /// mechanism (lengths).
     pub(super) fn natural_sizes(&mut self) {
         let scene = &self.scene;
-        if !scene
-            .rows
-            .iter()
-            .any(|r| matches!(r.kind, RowKind::Formula { .. }))
-        {
+        let is_asked = |row: &Row| match &row.kind {
+            RowKind::Formula { .. } => true,
+            RowKind::Displacements(sum) => sum.coupled.is_some(),
+            RowKind::Markers { .. } | RowKind::Cam { .. } => false,
+        };
+        if !scene.rows.iter().any(is_asked) {
             return;
         }
         let mut numbers = vec![0.0; scene.layout.len()];
@@ -128,9 +130,9 @@ impl Builder<'_> {
         let weights = super::programs::weights(scene);
         let sizes: Vec<Option<f64>> = (scene.rows.iter().enumerate())
             .map(|(r, row)| {
-                let RowKind::Formula { .. } = row.kind else {
+                if !is_asked(row) {
                     return None;
-                };
+                }
                 let gradient = at.row(r).gradient.clone();
                 let size = gradient
                     .iter()
@@ -146,8 +148,12 @@ impl Builder<'_> {
             })
             .collect();
         for (row, size) in self.scene.rows.iter_mut().zip(sizes) {
-            if let (RowKind::Formula { scale, .. }, Some(size)) = (&mut row.kind, size) {
-                *scale = size;
+            match (&mut row.kind, size) {
+                (RowKind::Formula { scale, .. }, Some(size)) => *scale = size,
+                (RowKind::Displacements(sum), Some(size)) => {
+                    sum.coupled.iter_mut().for_each(|c| c.scale = size);
+                }
+                _ => {}
             }
         }
     }

@@ -7,6 +7,7 @@
 //! loses its line here.
 
 use super::build::Builder;
+use super::external_inputs::{Hook, closure_for};
 use super::untouchable::Untouchable;
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::measures::{Family as MeasureFamily, Measure};
@@ -89,13 +90,14 @@ impl fmt::Display for Reason {
     }
 }
 
-/// Constraints that a routine computes, or whose curve does not stand in the dataset; inactive ones
-/// do not count.
-pub fn unknown_constraints(model: &Model) -> Vec<Unknown> {
+/// Constraints that a routine computes for which there is no closure, or whose curve does not stand
+/// in the dataset; inactive ones do not count.
+pub fn unknown_constraints(model: &Model, hooks: &[Hook]) -> Vec<Unknown> {
+    let is_hidden = |id: ElementId, user: &Formula| closure_for(hooks, id, user).is_none();
     let curve = |id: u32| -> Option<Hidden> {
         let (given, curve) = (model.curves.get(&id)?, ElementKind::Curve.id(id));
-        if given.function.is_some() {
-            return Some(Hidden::CurveInRoutine(curve));
+        if let Some(user) = &given.function {
+            return is_hidden(curve, user).then_some(Hidden::CurveInRoutine(curve));
         }
         let matrix = given.matrix.and_then(|m| model.matrices.get(&m));
         let file = matrix.and_then(|m| m.unread_file())?.to_string();
@@ -122,7 +124,8 @@ pub fn unknown_constraints(model: &Model) -> Vec<Unknown> {
         }
     }
     for (&id, c) in &model.couplers {
-        if c.user.is_some() {
+        let user = c.user.as_ref();
+        if user.is_some_and(|user| is_hidden(ElementKind::Coupler.id(id), user)) {
             add(ElementKind::Coupler, id, Hidden::InRoutine);
         }
     }
@@ -143,8 +146,13 @@ pub struct LeftOut {
 
 impl LeftOut {
     /// Of a model; `skip`: kinds of elements that are left out where they are not solved,
-    /// `zero_user`: also constraints that routines compute.
-    pub fn of(model: &Model, skip: &BTreeSet<ElementKind>, zero_user: bool) -> Self {
+    /// `zero_user`: also constraints that routines compute for which there is no closure.
+    pub fn of(
+        model: &Model,
+        skip: &BTreeSet<ElementKind>,
+        hooks: &[Hook],
+        zero_user: bool,
+    ) -> Self {
         let mut this = Self::default();
         for &id in model.others.keys() {
             let kind = id.kind;
@@ -161,7 +169,7 @@ impl LeftOut {
             )));
         }
         this.old_friction(model, skip);
-        for unknown in unknown_constraints(model) {
+        for unknown in unknown_constraints(model, hooks) {
             let Unknown { id, hidden } = unknown;
             let on_curve = matches!(id.kind, ElementKind::Ptcv | ElementKind::Cvcv);
             let curve = on_curve && skip.contains(&ElementKind::Curve);

@@ -15,6 +15,7 @@ mod compliance;
 pub mod configuration;
 pub mod contacts;
 mod coordinate_sums;
+pub mod coupled;
 mod couplers;
 mod downstream;
 pub mod elimination;
@@ -249,11 +250,16 @@ pub struct Sum {
     /// GEAR: the CV marker, and the I markers of the two geared bodies, on which the force of the
     /// row acts there along its z axis
     pub contact: Option<(usize, [usize; 2])>,
+    /// COUPLER by a routine: what is zero instead of the sum
+    pub coupled: Option<Box<coupled::Coupled>>,
 }
 
 impl Sum {
     /// Returns what counts as one, in a mechanism of the given size.
     pub fn scale(&self, length: f64) -> f64 {
+        if let Some(coupled) = &self.coupled {
+            return coupled.scale;
+        }
         let one = |d: &Displacement| if d.gauge.is_angle() { 1.0 } else { length };
         self.terms.iter().map(|(f, d)| f.abs() * one(d)).sum()
     }

@@ -16,6 +16,7 @@
 use super::asker::{Asker, Part};
 use super::build::Builder;
 use super::compile::Compiler;
+use super::external_inputs::closure_for;
 use super::external_inputs::{ExternalInput, SceneSampler, SceneSensor};
 use super::unknown::{DifferentialId, UnknownId};
 use super::{Entry, Formula, SceneDifferential};
@@ -471,7 +472,7 @@ impl Builder<'_> {
         let m = self.length_of_inputs(s.u)?;
         let discrete = if s.xd.is_some() { s.nd } else { 0 };
         let numbers = |values: Vec<f64>| values.into_iter().map(Entry::Number).collect();
-        let is_known = |f| self.hooks.iter().any(|h| h.stands_for(id, f));
+        let is_known = |f| closure_for(self.hooks, id, f).is_some();
         if self.zero_user && !s.function.as_ref().is_some_and(is_known) {
             // nothing moves: what would be computed is zero
             if let Some(x) = s.x {

@@ -9,6 +9,7 @@ mod running;
 mod alignment;
 mod angles;
 mod beginnings;
+mod by_closures;
 mod constraints;
 mod continuation;
 mod curves;

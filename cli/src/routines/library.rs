@@ -6,15 +6,13 @@
 //! by reference   Fortran: all arguments are addresses         sfosub_(&id, &t, par, &npar, …, value)
 //! by structure   C: a structure of the element, and values    Sfosub(&sforce, t, dflag, iflag, value)
 //! ```
-//!
-//! The structures have the layout that `slv_c_utils.h` of Adams gives them, as
-//! `include/cognate_routines.h` writes it down.
 
-use cognate::internals::system::asked::{Asked, within};
+use super::forms::{Ask, Asker, Form, Moment};
+use super::structures::Head;
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
-use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::ffi::{c_int, c_void};
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// SFOSUB and its like, and MOTSUB: id, time, par, npar, dflag or iord, iflag, results.
 type Flagged = unsafe extern "C" fn(
@@ -51,7 +49,63 @@ type System = unsafe extern "C" fn(
     *mut f64,
     *mut f64,
 );
-/// The same three in C.
+/// COUSUB, COUXX, COUXX2: id, time, par, npar, displacements with their number, iflag, results.
+type Coupler = unsafe extern "C" fn(
+    *const c_int,
+    *const f64,
+    *const f64,
+    *const c_int,
+    *const f64,
+    *const c_int,
+    *const c_int,
+    *mut f64,
+);
+/// CURSUB: id, par, npar, alpha, iord, iflag, results.
+type Curve = unsafe extern "C" fn(
+    *const c_int,
+    *const f64,
+    *const c_int,
+    *const f64,
+    *const c_int,
+    *const c_int,
+    *mut f64,
+);
+/// CNFSUB: id, time, par, npar, loci, ni, locj, nj, gap, gapdot, gapdotdot, area, dflag, iflag,
+/// results.
+type Normal = unsafe extern "C" fn(
+    *const c_int,
+    *const f64,
+    *const f64,
+    *const c_int,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const c_int,
+    *const c_int,
+    *mut f64,
+);
+/// CFFSUB: id, time, par, npar, loci, locj, x, xdot, nforce, area, dflag, iflag, results.
+type Friction = unsafe extern "C" fn(
+    *const c_int,
+    *const f64,
+    *const f64,
+    *const c_int,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const c_int,
+    *const c_int,
+    *mut f64,
+);
+/// The same in C; the first is also CURSUB's, with alpha and iord.
 type FlaggedByStructure = unsafe extern "C" fn(*const c_void, f64, c_int, c_int, *mut f64);
 type PlainByStructure = unsafe extern "C" fn(*const c_void, f64, c_int, *mut f64);
 type SystemByStructure = unsafe extern "C" fn(
@@ -68,27 +122,51 @@ type SystemByStructure = unsafe extern "C" fn(
     *mut f64,
 );
 
-/// The arguments that a routine has, by the kind of its element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// with DFLAG
-    Force,
-    /// without
-    Output,
-    /// with the order of the derivative in the place of DFLAG, called for each of three
-    Motion,
-    /// with states and inputs
-    System,
-}
+type CouplerByStructure = unsafe extern "C" fn(*const c_void, f64, *const f64, c_int, *mut f64);
+type NormalByStructure = unsafe extern "C" fn(
+    *const c_void,
+    f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    f64,
+    f64,
+    f64,
+    f64,
+    c_int,
+    c_int,
+    *mut f64,
+);
+type FrictionByStructure = unsafe extern "C" fn(
+    *const c_void,
+    f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    f64,
+    f64,
+    c_int,
+    c_int,
+    *mut f64,
+);
 
 #[derive(Clone, Copy)]
 enum Entry {
     Flagged(Flagged),
     Plain(Plain),
     System(System),
+    Coupler(Coupler),
+    Curve(Curve),
+    Normal(Normal),
+    Friction(Friction),
     FlaggedByStructure(FlaggedByStructure),
     PlainByStructure(PlainByStructure),
     SystemByStructure(SystemByStructure),
+    CouplerByStructure(CouplerByStructure),
+    NormalByStructure(NormalByStructure),
+    FrictionByStructure(FrictionByStructure),
 }
 
 /// Returns whether a name is that of a routine in C: in mixed case.
@@ -126,7 +204,6 @@ impl Loaded {
         let library = Arc::clone(self);
         Some(Routine {
             entry,
-            form,
             _library: library,
         })
     }
@@ -136,9 +213,14 @@ impl Loaded {
         // called while the library is there
         unsafe {
             Some(match form {
-                Form::Force | Form::Motion => Entry::FlaggedByStructure(self.symbol(name)?),
+                Form::Force | Form::Motion | Form::Curve => {
+                    Entry::FlaggedByStructure(self.symbol(name)?)
+                }
                 Form::Output => Entry::PlainByStructure(self.symbol(name)?),
                 Form::System => Entry::SystemByStructure(self.symbol(name)?),
+                Form::Coupler => Entry::CouplerByStructure(self.symbol(name)?),
+                Form::Normal => Entry::NormalByStructure(self.symbol(name)?),
+                Form::Friction => Entry::FrictionByStructure(self.symbol(name)?),
             })
         }
     }
@@ -150,6 +232,10 @@ impl Loaded {
                 Form::Force | Form::Motion => Entry::Flagged(self.symbol(name)?),
                 Form::Output => Entry::Plain(self.symbol(name)?),
                 Form::System => Entry::System(self.symbol(name)?),
+                Form::Coupler => Entry::Coupler(self.symbol(name)?),
+                Form::Curve => Entry::Curve(self.symbol(name)?),
+                Form::Normal => Entry::Normal(self.symbol(name)?),
+                Form::Friction => Entry::Friction(self.symbol(name)?),
             })
         }
     }
@@ -166,197 +252,96 @@ impl Loaded {
     }
 }
 
-/// Facts of an element that a structure of C tells, beside its number and the numbers of USER.
-#[derive(Clone, Debug)]
-pub enum Structure {
-    /// SFORCE: I, J, whether it has no reaction, its type
-    Single([c_int; 3], &'static CStr),
-    /// VFORCE and VTORQUE: I, JFLOAT, RM; GFORCE: I, RM, JFLOAT
-    Vector([c_int; 3]),
-    /// VARIABLE: IC
-    Variable(f64),
-    /// DIFF: STATIC_HOLD and IMPLICIT; IC
-    Differential([c_int; 2], [f64; 2]),
-    /// MOTION: the numbers of its joint and its markers
-    Motion {
-        joint: c_int,
-        kind: &'static CStr,
-        markers: [c_int; 2],
-        which: [u8; 2],
-        level: &'static CStr,
-    },
-    /// REQUEST: COMMENT and TITLE
-    Request(CString, [CString; 8]),
-    /// SENSOR: VALUE and ERROR; the letters of its comparison
-    Sensor([f64; 2], [u8; 2]),
-    /// GSE: NI, NO, U, Y, NS, X, IC, STATIC_HOLD, IMPLICIT, STATICS_ONLY, ND, XD, ICD
-    System([c_int; 13]),
-}
-
-#[repr(C)]
-struct Head {
-    id: c_int,
-    npar: c_int,
-    par: *const f64,
-}
-
-/// A structure that is a head and a rest.
-#[repr(C)]
-struct With<T>(Head, T);
-
-#[repr(C)]
-struct SingleRest([c_int; 3], *const c_char);
-
-#[repr(C)]
-struct DifferentialRest([c_int; 2], [f64; 2]);
-
-#[repr(C)]
-struct MotionRest {
-    joint: c_int,
-    kind: *const c_char,
-    markers: [c_int; 2],
-    which: [u8; 2],
-    level: *const c_char,
-}
-
-#[repr(C)]
-struct RequestRest(*const c_char, [*const c_char; 8]);
-
-#[repr(C)]
-struct SensorRest([f64; 2], [u8; 2]);
-
-#[repr(C)]
-struct SystemRest([c_int; 13], f64);
-
-impl Structure {
-    /// Calls a function with the address of the structure as C has it.
-    fn lend(&self, head: Head, call: impl FnOnce(*const c_void)) {
-        fn lent<T>(structure: &With<T>) -> *const c_void {
-            std::ptr::from_ref(structure).cast()
-        }
-        match self {
-            Structure::Single(numbers, kind) => {
-                call(lent(&With(head, SingleRest(*numbers, kind.as_ptr()))));
-            }
-            Structure::Vector(numbers) => call(lent(&With(head, *numbers))),
-            Structure::Variable(ic) => call(lent(&With(head, *ic))),
-            Structure::Differential(flags, ic) => {
-                call(lent(&With(head, DifferentialRest(*flags, *ic))));
-            }
-            Structure::Motion {
-                joint,
-                kind,
-                markers,
-                which,
-                level,
-            } => {
-                let rest = MotionRest {
-                    joint: *joint,
-                    kind: kind.as_ptr(),
-                    markers: *markers,
-                    which: *which,
-                    level: level.as_ptr(),
-                };
-                call(lent(&With(head, rest)));
-            }
-            Structure::Request(comment, title) => {
-                let title = std::array::from_fn(|k| title[k].as_ptr());
-                call(lent(&With(head, RequestRest(comment.as_ptr(), title))));
-            }
-            Structure::Sensor(numbers, logic) => {
-                call(lent(&With(head, SensorRest(*numbers, *logic))));
-            }
-            Structure::System(numbers) => call(lent(&With(head, SystemRest(*numbers, 0.0)))),
-        }
-    }
-}
-
-/// The element that a routine is called for.
-#[derive(Clone, Debug)]
-pub struct Asker {
-    /// its number
-    pub id: c_int,
-    /// what a structure of C tells of it
-    pub structure: Structure,
-    /// states and inputs of a GSE
-    pub sizes: [usize; 2],
-    /// numbers that the first call finds places for; of a GSE its rates and outputs
-    pub results: usize,
-}
-
 /// A routine of a library that is loaded.
 #[derive(Clone)]
 pub struct Routine {
     entry: Entry,
-    form: Form,
     _library: Arc<Loaded>,
 }
 
 /// Numbers that a routine finds places for, whatever its element takes.
 const PLACES: usize = 64;
-
-/// One call at a time: what is compiled from Fortran keeps numbers between its calls.
-static CALL: Mutex<()> = Mutex::new(());
+/// Contact areas and second rates of gaps, which nothing here knows.
+const UNKNOWN: f64 = 0.0;
 
 impl Routine {
-    /// Calls it for an element with the numbers of USER, and fills its results; `states`: states
-    /// and inputs of a GSE, one after the other. Returns what it has asked.
-    pub fn call(
-        &self,
-        of: &Asker,
-        par: &[f64],
-        states: &[f64],
-        asked: Asked,
-        out: &mut [f64],
-    ) -> Asked {
-        let (time, is_first) = (asked.time, asked.is_first);
-        let _alone = CALL.lock().unwrap_or_else(PoisonError::into_inner);
-        within(asked, || {
-            if self.form == Form::System {
-                self.call_system(of, (time, par, is_first), states, out);
-                return;
-            }
-            // a routine that fills more than its element takes still finds places
-            let mut places = [0.0; PLACES];
-            if self.form == Form::Motion {
-                for (order, place) in places.iter_mut().take(3).enumerate() {
-                    let mut value = [0.0; PLACES];
-                    self.call_once(of, (time, par, is_first), order as c_int, &mut value);
-                    *place = value[0];
-                }
-            } else {
-                self.call_once(of, (time, par, is_first), 0, &mut places);
-            }
-            let n = out.len().min(PLACES);
-            out[..n].copy_from_slice(&places[..n]);
-        })
+    /// Calls it once, and fills its results.
+    pub fn call(&self, of: &Asker, at: Moment<'_>, ask: &Ask<'_>, out: &mut [f64]) {
+        if let Ask::System(states, inputs) = ask {
+            self.call_system(of, at, (states, inputs), out);
+            return;
+        }
+        // a routine that fills more than its element takes still finds places
+        let mut places = [0.0; PLACES];
+        self.call_with(of, at, ask, &mut places);
+        let n = out.len().min(PLACES);
+        out[..n].copy_from_slice(&places[..n]);
     }
 
-    /// Calls a routine that has one row of results; `flag`: DFLAG, or the order of a derivative.
-    fn call_once(
-        &self,
-        of: &Asker,
-        (time, par, is_first): (f64, &[f64], bool),
-        flag: c_int,
-        places: &mut [f64; PLACES],
-    ) {
-        let (id, npar, iflag) = (of.id, par.len() as c_int, c_int::from(is_first));
+    /// Calls a routine that has one row of results.
+    fn call_with(&self, of: &Asker, at: Moment<'_>, ask: &Ask<'_>, places: &mut [f64; PLACES]) {
+        let Moment { time, par, .. } = at;
+        let (id, npar, iflag) = (of.id, par.len() as c_int, c_int::from(at.is_first));
         let (par, out) = (par.as_ptr(), places.as_mut_ptr());
+        let lend = |call: &dyn Fn(*const c_void)| of.structure.lend(Head { id, npar, par }, call);
         // SAFETY: the routine has the arguments of its form, as the manual says; what they point
         // to lives longer than the call
         unsafe {
-            match self.entry {
-                Entry::Flagged(f) => f(&id, &time, par, &npar, &flag, &iflag, out),
-                Entry::Plain(f) => f(&id, &time, par, &npar, &iflag, out),
-                Entry::FlaggedByStructure(f) => {
-                    let call = |element| f(element, time, flag, iflag, out);
-                    of.structure.lend(Head { id, npar, par }, call);
+            match (self.entry, ask) {
+                (Entry::Flagged(f), Ask::Plain(Some(flag))) => {
+                    let flag = flag.number();
+                    f(&id, &time, par, &npar, &flag, &iflag, out);
                 }
-                Entry::PlainByStructure(f) => {
-                    let call = |element| f(element, time, iflag, out);
-                    of.structure.lend(Head { id, npar, par }, call);
+                (Entry::Plain(f), Ask::Plain(_)) => f(&id, &time, par, &npar, &iflag, out),
+                (Entry::Coupler(f), Ask::Coupler(disp)) => {
+                    let n = disp.len() as c_int;
+                    f(&id, &time, par, &npar, disp.as_ptr(), &n, &iflag, out);
                 }
-                Entry::System(_) | Entry::SystemByStructure(_) => (),
+                (Entry::Curve(f), Ask::Curve(alpha, iord)) => {
+                    f(&id, par, &npar, alpha, iord, &iflag, out);
+                }
+                (Entry::Normal(f), Ask::Normal(touch)) => {
+                    let [i, ni, j, nj] = touch.vectors().map(|v| v.as_ptr());
+                    let (gap, rate) = (&touch.gap, &touch.gap_rate);
+                    f(
+                        &id, &time, par, &npar, i, ni, j, nj, gap, rate, &UNKNOWN, &UNKNOWN, &0,
+                        &iflag, out,
+                    );
+                }
+                (Entry::Friction(f), Ask::Friction(slip)) => {
+                    let [i, j, x, v] = slip.vectors().map(|v| v.as_ptr());
+                    let n = &slip.normal_force;
+                    f(
+                        &id, &time, par, &npar, i, j, x, v, n, &UNKNOWN, &0, &iflag, out,
+                    );
+                }
+                (Entry::FlaggedByStructure(f), Ask::Plain(Some(flag))) => {
+                    lend(&|element| f(element, time, flag.number(), iflag, out));
+                }
+                (Entry::FlaggedByStructure(f), Ask::Curve(alpha, iord)) => {
+                    lend(&|element| f(element, *alpha, *iord, iflag, out));
+                }
+                (Entry::PlainByStructure(f), Ask::Plain(_)) => {
+                    lend(&|element| f(element, time, iflag, out));
+                }
+                (Entry::CouplerByStructure(f), Ask::Coupler(disp)) => {
+                    lend(&|element| f(element, time, disp.as_ptr(), iflag, out));
+                }
+                (Entry::NormalByStructure(f), Ask::Normal(t)) => {
+                    let [i, ni, j, nj] = t.vectors().map(|v| v.as_ptr());
+                    let (gap, rate, no) = (t.gap, t.gap_rate, UNKNOWN);
+                    lend(&|element| {
+                        f(
+                            element, time, i, ni, j, nj, gap, rate, no, no, 0, iflag, out,
+                        );
+                    });
+                }
+                (Entry::FrictionByStructure(f), Ask::Friction(s)) => {
+                    let [i, j, x, v] = s.vectors().map(|v| v.as_ptr());
+                    let (n, no) = (s.normal_force, UNKNOWN);
+                    lend(&|element| f(element, time, i, j, x, v, n, no, 0, iflag, out));
+                }
+                _ => unreachable!("a routine is found by the form in which it is called"),
             }
         }
     }
@@ -365,22 +350,18 @@ impl Routine {
     fn call_system(
         &self,
         of: &Asker,
-        (time, par, is_first): (f64, &[f64], bool),
-        states: &[f64],
+        at: Moment<'_>,
+        (states, inputs): (&[f64], &[f64]),
         out: &mut [f64],
     ) {
-        let [n_states, n_inputs] = of.sizes;
-        if states.len() != n_states + n_inputs || out.len() < n_states {
-            return;
-        }
-        let (states, inputs) = states.split_at(n_states);
-        let (rates, outputs) = out.split_at_mut(n_states);
-        let (id, npar, iflag) = (of.id, par.len() as c_int, c_int::from(is_first));
-        let counts = [n_states, n_inputs, outputs.len()].map(|n| n as c_int);
+        let Moment { time, par, .. } = at;
+        let (rates, outputs) = out.split_at_mut(states.len().min(out.len()));
+        let (id, npar, iflag) = (of.id, par.len() as c_int, c_int::from(at.is_first));
+        let counts = [states.len(), inputs.len(), outputs.len()].map(|n| n as c_int);
         let (x, u, par) = (states.as_ptr(), inputs.as_ptr(), par.as_ptr());
         let (rates, y) = (rates.as_mut_ptr(), outputs.as_mut_ptr());
         let [ns, ni, no] = &counts;
-        // SAFETY: as in `call_once`
+        // SAFETY: as in `call_with`
         unsafe {
             match self.entry {
                 Entry::System(f) => {
@@ -392,7 +373,7 @@ impl Routine {
                     let call = |gse| f(gse, time, 0, iflag, *ns, x, *ni, u, *no, rates, y);
                     of.structure.lend(Head { id, npar, par }, call);
                 }
-                _ => (),
+                _ => unreachable!("a routine is found by the form in which it is called"),
             }
         }
     }

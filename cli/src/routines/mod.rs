@@ -1,4 +1,5 @@
-//! `--routines`: shared libraries whose routines compute what `USER(…)` stands for.
+//! `--routines`: shared libraries and files of Python whose routines compute what `USER(…)` stands
+//! for.
 //!
 //! They are loaded because the option says so, and never because a file does: opening somebody
 //! else's dataset runs no code. ROUTINE=library::entry chooses among the libraries that were given.
@@ -6,78 +7,89 @@
 //! Each routine is called once with IFLAG true, before anything is computed: what it asks for then
 //! becomes the inputs of the closure that calls it from then on.
 
+mod elements;
+mod forms;
 mod library;
+mod python;
 mod services;
+mod structures;
 
 use super::mistake::Mistake;
 use super::{Failure, remark};
 use cognate::analysis::session::Session;
-use cognate::dataset::Dataset;
+use cognate::analysis::sweep::Sweep;
+use cognate::dataset::{Dataset, Reading};
 use cognate::diagnostic::{Cause, Diagnostic, Severity, counted};
 use cognate::disk;
 use cognate::internals::system::asked::Asked;
 use cognate::internals::system::closures::{Call, Hook};
-use cognate::model::{
-    ArrayKind, Comparison, Driven, ElementId, ElementKind as K, Formula, Level, Model,
-};
+use cognate::model::{ElementId, ElementKind as K, Formula, Model};
 use cognate::results::Event;
-use library::{Asker, Form, Loaded, Routine, Structure, is_mixed};
+use elements::asker;
+use forms::{Asker, Form, Found, Routine};
+use library::is_mixed;
 use std::collections::BTreeMap;
-use std::ffi::{CString, c_int};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The libraries of routines.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub struct RoutineArgs {
-    /// Shared library of routines that compute what USER(…) stands for (repeatable). Its code is
-    /// run, with your rights: give libraries that you trust [default: none]
+    /// Shared library, or file of Python (.py), of routines that compute what USER(…) stands for
+    /// (repeatable). Its code is run, with your rights: give what you trust [default: none]
     #[arg(long = "routines", value_name = "LIBRARY")]
     libraries: Vec<PathBuf>,
 }
 
 /// Kinds of elements whose USER a library can compute: the routine where the dataset names none,
 /// and its arguments.
-const KINDS: [(K, &str, Form); 10] = [
-    (K::Sforce, "Sfosub", Form::Force),
-    (K::Vforce, "Vfosub", Form::Force),
-    (K::Vtorque, "Vtosub", Form::Force),
-    (K::Gforce, "Gfosub", Form::Force),
-    (K::Variable, "Varsub", Form::Force),
-    (K::Diff, "Difsub", Form::Force),
-    (K::Motion, "Motsub", Form::Motion),
-    (K::Request, "Reqsub", Form::Output),
-    (K::Sensor, "Sensub", Form::Output),
-    (K::Gse, "Gsesub", Form::System),
+const KINDS: [(K, &str, &str, Form); 14] = [
+    (K::Sforce, FUNCTION, "Sfosub", Form::Force),
+    (K::Vforce, FUNCTION, "Vfosub", Form::Force),
+    (K::Vtorque, FUNCTION, "Vtosub", Form::Force),
+    (K::Gforce, FUNCTION, "Gfosub", Form::Force),
+    (K::Variable, FUNCTION, "Varsub", Form::Force),
+    (K::Diff, FUNCTION, "Difsub", Form::Force),
+    (K::Motion, FUNCTION, "Motsub", Form::Motion),
+    (K::Request, FUNCTION, "Reqsub", Form::Output),
+    (K::Sensor, FUNCTION, "Sensub", Form::Output),
+    (K::Gse, FUNCTION, "Gsesub", Form::System),
+    (K::Coupler, FUNCTION, COUSUB, Form::Coupler),
+    (K::Curve, FUNCTION, "Cursub", Form::Curve),
+    (K::Contact, FUNCTION, "Cnfsub", Form::Normal),
+    (K::Contact, FRICTION_FUNCTION, "Cffsub", Form::Friction),
 ];
 
-/// Kinds whose routines are not called, what these are called, and the way on.
-const NOT_CALLED: [(K, &str, &str); 4] = [
-    (
-        K::Field,
-        "FIESUB",
-        "a GFORCE by expressions or by GFOSUB exerts the same",
-    ),
-    (
-        K::Coupler,
-        "COUSUB",
-        "give SCALES, or write the relation as a GCON",
-    ),
-    (
-        K::Curve,
-        "CURSUB",
-        "give a MATRIX with a row x, y, z for each point",
-    ),
-    (
-        K::Contact,
-        "CNFSUB and CFFSUB",
-        "give the contact an IMPACT or POISSON law",
-    ),
-];
+/// Size of what a routine is told from which on its results may overflow.
+const FARTHEST: f64 = 1e100;
+
+const FUNCTION: &str = "FUNCTION";
+const FRICTION_FUNCTION: &str = "FRICTION_FUNCTION";
+const COUSUB: &str = "Cousub";
+/// Routines of the partial derivatives of what COUSUB computes.
+const PARTIALS: [&str; 2] = ["Couxx", "Couxx2"];
+
+/// A library, or a file of Python.
+#[derive(Clone)]
+enum Library {
+    Compiled(Arc<library::Loaded>),
+    Python(Arc<python::Loaded>),
+}
+
+impl Library {
+    fn find(&self, name: &str, form: Form) -> Option<Routine> {
+        match self {
+            Library::Compiled(loaded) => loaded.find(name, form).map(Routine::Compiled),
+            Library::Python(loaded) => loaded.find(name).map(Routine::Python),
+        }
+    }
+}
 
 /// A `USER(…)` that a routine is to compute.
 struct Wanted<'m> {
     element: ElementId,
+    /// the argument where it stands
+    argument: &'static str,
     constants: &'m [f64],
     /// library and entry that the dataset names
     library: Option<&'m str>,
@@ -86,7 +98,7 @@ struct Wanted<'m> {
 }
 
 impl RoutineArgs {
-    /// Loads the libraries and has their routines compute the USERs of a model; `zero_user`: what
+    /// Loads the libraries and has their routines compute the USERs of a session; `zero_user`: what
     /// no library has is zero.
     ///
     /// # Errors
@@ -99,31 +111,7 @@ impl RoutineArgs {
         zero_user: bool,
     ) -> Result<Mistake, Failure> {
         let mistake = Mistake::default();
-        if self.libraries.is_empty() {
-            return Ok(mistake);
-        }
-        let libraries = self
-            .libraries
-            .iter()
-            .map(|path| Ok((stem(path), load(path)?)));
-        let libraries: Vec<_> = libraries.collect::<Result<_, Failure>>()?;
-        let (found, wrong) = found(&session.model, &libraries, zero_user);
-        if !wrong.is_empty() {
-            return Err(Failure::in_model(dataset, wrong));
-        }
-        let mut hooks = Vec::with_capacity(found.len());
-        let mut wrong = Vec::new();
-        for (wanted, routine) in found {
-            let asker = asker(&session.model, wanted.element);
-            let hook = hook(&wanted, asker, routine, &mistake);
-            if session.model.is_active(wanted.element) {
-                wrong.extend(wrong_questions(&session.model, wanted.element, &hook));
-            }
-            hooks.push(hook);
-        }
-        if !wrong.is_empty() {
-            return Err(Failure::in_model(dataset, wrong));
-        }
+        let hooks = self.hooks(&session.model, dataset, zero_user, &mistake)?;
         hooks
             .into_iter()
             .for_each(|hook| session.register_hook(hook));
@@ -131,6 +119,61 @@ impl RoutineArgs {
         let event = |name| Event::Info(format!("routines: {name}"));
         session.run.log.extend(names.map(event));
         Ok(mistake)
+    }
+
+    /// Has the routines compute the USERs of all runs of a sweep.
+    ///
+    /// # Errors
+    /// Those of [`compute`](Self::compute).
+    pub fn compute_in(
+        &self,
+        sweep: &mut Sweep,
+        reading: &Reading,
+        zero_user: bool,
+    ) -> Result<Mistake, Failure> {
+        let mistake = Mistake::default();
+        let Reading { model, dataset, .. } = reading;
+        for Hook { name, inputs, law } in self.hooks(model, dataset, zero_user, &mistake)? {
+            let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
+            sweep.register(&name, &inputs, move |call, out| law(call, out));
+        }
+        Ok(mistake)
+    }
+
+    /// Loads the libraries; returns closures that call their routines.
+    fn hooks(
+        &self,
+        model: &Model,
+        dataset: &Dataset,
+        zero_user: bool,
+        mistake: &Mistake,
+    ) -> Result<Vec<Hook>, Failure> {
+        if self.libraries.is_empty() {
+            return Ok(Vec::new());
+        }
+        let libraries = self
+            .libraries
+            .iter()
+            .map(|path| Ok((stem(path), load(path)?)));
+        let libraries: Vec<_> = libraries.collect::<Result<_, Failure>>()?;
+        let (found, wrong) = found(model, &libraries, zero_user);
+        if !wrong.is_empty() {
+            return Err(Failure::in_model(dataset, wrong));
+        }
+        let mut hooks = Vec::with_capacity(found.len());
+        let mut wrong = Vec::new();
+        for (wanted, routine) in found {
+            let asker = asker(model, wanted.element, wanted.form);
+            let hook = hook(&wanted, asker, routine, mistake);
+            if model.is_active(wanted.element) {
+                wrong.extend(wrong_questions(model, wanted.element, &hook));
+            }
+            hooks.push(hook);
+        }
+        if !wrong.is_empty() {
+            return Err(Failure::in_model(dataset, wrong));
+        }
+        Ok(hooks)
     }
 }
 
@@ -143,19 +186,22 @@ fn stem(path: &Path) -> String {
 }
 
 /// Loads a library.
-fn load(path: &Path) -> Result<Arc<Loaded>, Failure> {
+fn load(path: &Path) -> Result<Library, Failure> {
     let name = disk::text(path);
     let refused = |what: String| Diagnostic::error("cannot_open", format!("{name}: {what}"));
-    if path.extension().is_some_and(|e| e == "py") {
-        let what = "routines in Python are given to a session from Python, not to this command";
-        let help = "with pycognate: @model.user(\"SFORCE/3\", inputs=[\"DX(1,2)\"]) before a function (docs/python.md)";
-        return Err(refused(what.into()).help(help).into());
-    }
     // a name without a folder would be looked for where the system keeps its libraries
     let file = path.canonicalize();
     let file = file.map_err(|e| refused(format!("cannot be opened: {e}")))?;
     disk::note_input(&file);
-    let loaded = Loaded::open(&file).map_err(|said| {
+    if path.extension().is_some_and(|e| e == "py") {
+        let loaded = python::Loaded::open(&file);
+        return match loaded {
+            Ok(loaded) => Ok(Library::Python(Arc::new(loaded))),
+            Err((what, Some(advice))) => Err(refused(what).help(advice).into()),
+            Err((what, None)) => Err(refused(what).into()),
+        };
+    }
+    let loaded = library::Loaded::open(&file).map_err(|said| {
         let Some((_, symbol)) = said.split_once("undefined symbol: ") else {
             return refused(format!("cannot be loaded: {said}"));
         };
@@ -164,18 +210,18 @@ fn load(path: &Path) -> Result<Arc<Loaded>, Failure> {
             "SYSFNC, SYSARY, SYSPAR, ERRMES, USRMES and TIMGET are here, by the names of Fortran (sysfnc_) and of C (c_sysfnc)",
         )
     })?;
-    Ok(Arc::new(loaded))
+    Ok(Library::Compiled(Arc::new(loaded)))
 }
 
 /// Returns the routines that compute the USERs of a model, and what is wrong with the others.
 fn found<'m>(
     model: &'m Model,
-    libraries: &[(String, Arc<Loaded>)],
+    libraries: &[(String, Library)],
     zero_user: bool,
-) -> (Vec<(Wanted<'m>, Routine)>, Vec<Diagnostic>) {
+) -> (Vec<(Wanted<'m>, Found)>, Vec<Diagnostic>) {
     let (mut found, mut wrong) = (Vec::new(), Vec::new());
     let mut missing: BTreeMap<String, Vec<ElementId>> = BTreeMap::new();
-    let mut not_called: BTreeMap<K, Vec<ElementId>> = BTreeMap::new();
+    let mut fields = Vec::new();
     for owned in model.formulas() {
         let Formula::User { constants, routine } = owned.formula else {
             continue;
@@ -187,12 +233,11 @@ fn found<'m>(
             let d = Diagnostic::error(Cause::UserRoutine, what).element(element);
             wrong.push(d.help("write what it computes as an expression"));
         }
-        if owned.argument != "FUNCTION" {
-            continue;
-        }
-        let Some(&(_, default, form)) = KINDS.iter().find(|row| row.0 == element.kind) else {
-            if is_active && !zero_user {
-                not_called.entry(element.kind).or_default().push(element);
+        let mut rows = KINDS.iter();
+        let row = rows.find(|row| (row.0, row.1) == (element.kind, owned.argument));
+        let Some(&(_, argument, default, form)) = row else {
+            if is_active && !zero_user && element.kind == K::Field {
+                fields.push(element);
             }
             continue;
         };
@@ -203,6 +248,7 @@ fn found<'m>(
         };
         let wanted = Wanted {
             element,
+            argument,
             constants,
             library,
             entry,
@@ -223,22 +269,34 @@ fn found<'m>(
         }
     }
     wrong.extend(missing.iter().filter_map(|(entry, all)| absent(entry, all)));
-    wrong.extend(
-        not_called
-            .iter()
-            .filter_map(|(kind, all)| refused(*kind, all)),
-    );
+    wrong.extend(fields.first().map(|first| {
+        let what = format!(
+            "routines of a FIELD (FIESUB) are not called{}",
+            listed(&fields)
+        );
+        let d = Diagnostic::error(Cause::UserRoutine, what).element(*first);
+        d.help("a GFORCE by expressions or by GFOSUB exerts the same")
+    }));
     (found, wrong)
 }
 
 impl Wanted<'_> {
     /// Finds its routine: in the libraries of the name that the dataset gives, else in any.
-    fn find(&self, libraries: &[(String, Arc<Loaded>)]) -> Option<Routine> {
+    fn find(&self, libraries: &[(String, Library)]) -> Option<Found> {
         let named = self.library.map(|name| stem(Path::new(name)));
         let is_meant = |stem: &str| named.as_deref() == Some(stem);
         let (meant, others): (Vec<_>, Vec<_>) = libraries.iter().partition(|l| is_meant(&l.0));
         let mut all = meant.into_iter().chain(others);
-        all.find_map(|(_, library)| library.find(self.entry.trim(), self.form))
+        let (name, form) = (self.entry.trim(), self.form);
+        let found = |library: &Library| Some((library.find(name, form)?, library.clone()));
+        let (routine, library) = all.find_map(|(_, library)| found(library))?;
+        let has_partials = form == Form::Coupler && name.eq_ignore_ascii_case(COUSUB);
+        let partial = |name: &str| has_partials.then(|| library.find(name, form)).flatten();
+        Some(Found {
+            form,
+            routine,
+            partials: PARTIALS.map(partial),
+        })
     }
 }
 
@@ -268,17 +326,6 @@ fn absent(entry: &str, all: &[ElementId]) -> Option<Diagnostic> {
     )))
 }
 
-/// Says which elements want routines that are not called.
-fn refused(kind: K, all: &[ElementId]) -> Option<Diagnostic> {
-    let (_, routine, advice) = NOT_CALLED.iter().find(|row| row.0 == kind)?;
-    let what = format!(
-        "routines of a {kind} ({routine}) are not called{}",
-        listed(all)
-    );
-    let d = Diagnostic::error(Cause::UserRoutine, what).element(*all.first()?);
-    Some(d.help(*advice))
-}
-
 /// Lists elements that ask for one thing; nothing where one asks, whose name stands before.
 fn listed(all: &[ElementId]) -> String {
     if all.len() == 1 {
@@ -302,7 +349,7 @@ fn wrong_questions(model: &Model, element: ElementId, hook: &Hook) -> Vec<Diagno
 }
 
 /// Returns the closure that calls a routine, after the first call that finds out what it reads.
-fn hook(wanted: &Wanted<'_>, asker: Asker, routine: Routine, mistake: &Mistake) -> Hook {
+fn hook(wanted: &Wanted<'_>, asker: Asker, found: Found, mistake: &Mistake) -> Hook {
     let element = wanted.element;
     let told = Told {
         element,
@@ -310,34 +357,39 @@ fn hook(wanted: &Wanted<'_>, asker: Asker, routine: Routine, mistake: &Mistake) 
         said: Arc::default(),
     };
     let mut nothing = vec![0.0; asker.results];
-    let states = vec![0.0; asker.sizes.iter().sum()];
-    let first = routine.call(
-        &asker,
-        wanted.constants,
-        &states,
-        Asked::first(),
-        &mut nothing,
-    );
-    told.hear(&first);
-    let questions = Arc::new(first.found);
+    let given = vec![0.0; asker.given.iter().sum()];
+    let asked = Asked::first();
+    let first = found.compute(&asker, wanted.constants, &given, asked, &mut nothing);
+    told.hear(&first.asked);
+    let questions = Arc::new(first.asked.found);
     let n = questions.inputs.len();
+    let name = match wanted.argument {
+        FUNCTION => element.to_string(),
+        argument => format!("{element} {argument}"),
+    };
     Hook {
-        name: element.to_string(),
+        name,
         inputs: questions.inputs.clone(),
         law: Arc::new(move |call: &Call<'_>, results: &mut [f64]| {
             if told.mistake.is_there() {
+                results.fill(0.0);
                 return;
             }
-            let (values, states) = call.values.split_at(n.min(call.values.len()));
+            let (values, given) = call.values.split_at(n.min(call.values.len()));
             let asked = Asked {
                 questions: Arc::clone(&questions),
                 values: values.to_vec(),
                 time: call.time,
                 ..Asked::default()
             };
-            let asked = routine.call(&asker, call.constants, states, asked, results);
-            told.hear(&asked);
-            told.check(call.time, results);
+            let done = found.compute(&asker, call.constants, given, asked, results);
+            told.hear(&done.asked);
+            // a step that has gone astray is not the routine's mistake, and is not kept
+            if done.odd.is_some() && call.values.iter().any(|x| x.is_nan() || x.abs() > FARTHEST) {
+                results.fill(f64::NAN);
+                return;
+            }
+            told.check(call.time, done.odd);
         }),
     }
 }
@@ -377,113 +429,11 @@ impl Told {
     }
 
     /// Keeps the complaint about a result that is no finite number.
-    fn check(&self, time: f64, results: &mut [f64]) {
-        if let Some(x) = results.iter_mut().find(|x| !x.is_finite()) {
+    fn check(&self, time: f64, odd: Option<f64>) {
+        if let Some(x) = odd {
             let what = format!("its routine has computed {x} at time {time}");
             let d = Diagnostic::error(Cause::UserRoutine, what).element(self.element);
             self.mistake.keep(d);
-            *x = 0.0;
         }
     }
-}
-
-/// Returns a number of an element as C has it.
-fn number(id: Option<u32>) -> c_int {
-    id.and_then(|id| c_int::try_from(id).ok()).unwrap_or(0)
-}
-
-/// Returns what a routine is told of its element.
-fn asker(model: &Model, element: ElementId) -> Asker {
-    let n = element.number;
-    let vector = |f: &cognate::model::VectorForce, order: [usize; 3]| {
-        let all = [Some(f.i), f.jfloat, f.rm].map(number);
-        Structure::Vector(order.map(|k| all[k]))
-    };
-    let mut sizes = [0, 0];
-    let mut results = 1;
-    let found = match element.kind {
-        K::Vforce => model.vforces.get(&n).map(|f| vector(f, [0, 1, 2])),
-        K::Vtorque => model.vtorques.get(&n).map(|f| vector(f, [0, 1, 2])),
-        K::Gforce => model.gforces.get(&n).map(|f| vector(f, [0, 2, 1])),
-        K::Sforce => model.sforces.get(&n).map(|f| {
-            let numbers = [number(Some(f.i)), number(Some(f.j)), f.action_only.into()];
-            let kind = if f.rotational {
-                c"ROTATION"
-            } else {
-                c"TRANSLATION"
-            };
-            Structure::Single(numbers, kind)
-        }),
-        K::Diff => model.differentials.get(&n).map(|d| {
-            let ic = d.ic.map(Option::unwrap_or_default);
-            Structure::Differential([d.static_hold.into(), d.implicit.into()], ic)
-        }),
-        K::Motion => model.motions.get(&n).map(motion),
-        K::Request => model.requests.get(&n).map(request),
-        K::Sensor => model.sensors.get(&n).map(|s| {
-            let logic = match s.comparison {
-                Comparison::Equal => *b"EQ",
-                Comparison::GreaterOrEqual => *b"GE",
-                Comparison::LessOrEqual => *b"LE",
-            };
-            Structure::Sensor([s.value, s.error.unwrap_or(1e-3)], logic)
-        }),
-        K::Gse => model.general_systems.get(&n).map(|g| {
-            let inputs = g.u.and_then(|u| model.arrays.get(&u)).map(|a| &a.kind);
-            let n_inputs = match inputs {
-                Some(ArrayKind::Inputs(variables)) => variables.len(),
-                _ => 0,
-            };
-            sizes = [g.ns, n_inputs];
-            results = g.ns + g.no;
-            let count = |n: usize| c_int::try_from(n).unwrap_or(c_int::MAX);
-            let [u, y, x, ic, xd, icd] = [g.u, g.y, g.x, g.ic, g.xd, g.icd].map(number);
-            let (ni, no, ns, nd) = (count(n_inputs), count(g.no), count(g.ns), count(g.nd));
-            let hold = g.static_hold.into();
-            Structure::System([ni, no, u, y, ns, x, ic, hold, 0, 0, nd, xd, icd])
-        }),
-        _ => model
-            .variables
-            .get(&n)
-            .map(|v| Structure::Variable(v.ic.unwrap_or(0.0))),
-    };
-    Asker {
-        id: number(Some(n)),
-        structure: found.unwrap_or(Structure::Variable(0.0)),
-        sizes,
-        results,
-    }
-}
-
-/// Describes a MOTION.
-fn motion(m: &cognate::model::Motion) -> Structure {
-    let (joint, markers, which) = match m.driven {
-        Driven::Joint(joint) => (Some(joint), [0, 0], [0, 0]),
-        Driven::JointTranslation(joint) => (Some(joint), [0, 0], *b"T\0"),
-        Driven::JointRotation(joint) => (Some(joint), [0, 0], *b"R\0"),
-        Driven::Markers { i, j, component } => {
-            let names = [*b"X\0", *b"Y\0", *b"Z\0", *b"B1", *b"B2", *b"B3"];
-            let which = names.get(component).copied().unwrap_or_default();
-            (None, [i, j].map(|id| number(Some(id))), which)
-        }
-    };
-    let is_turn = matches!(m.driven, Driven::JointRotation(_)) || which[0] == b'B';
-    Structure::Motion {
-        joint: number(joint),
-        kind: if is_turn { c"ROTATION" } else { c"TRANSLATION" },
-        markers,
-        which,
-        level: match m.level {
-            Level::Displacement => c"DISPLACEMENT",
-            Level::Velocity => c"VELOCITY",
-            Level::Acceleration => c"ACCELERATION",
-        },
-    }
-}
-
-/// Describes a REQUEST.
-fn request(r: &cognate::model::Request) -> Structure {
-    let text = |s: &str| CString::new(s.replace('\0', " ")).unwrap_or_default();
-    let title = std::array::from_fn(|k| text(r.title.get(k).map_or("", String::as_str)));
-    Structure::Request(text(r.comment.as_deref().unwrap_or_default()), title)
 }

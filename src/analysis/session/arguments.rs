@@ -62,9 +62,8 @@ impl Session {
 
     /// Returns whether a closure stands for a `USER(…)` of the model.
     pub(super) fn computes_something(&self, hook: &Hook) -> bool {
-        let name = hook.as_name();
         let all = self.model.formulas();
-        (all.iter()).any(|owned| name.stands_for(owned.element, owned.formula))
+        (all.iter()).any(|owned| hook.stands_for(owned.element, owned.argument, owned.formula))
     }
 
     /// Checks that the model has the elements that alone are to be recorded, before there are rows.

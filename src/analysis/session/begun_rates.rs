@@ -7,7 +7,6 @@ use super::state_at_start::Start;
 use crate::analysis::look::Look;
 use crate::analysis::start::velocities::{self, moving};
 use crate::analysis::start::{assemble, initial_conditions};
-use crate::analysis::system::closures;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Driven, ElementKind, Joint, Level, Model};
 use crate::physics::joint::Displacements;
@@ -151,11 +150,10 @@ impl Session {
         of: &Start,
         look: Look<'_>,
     ) -> Result<Option<(Start, Vec<f64>)>, Vec<Diagnostic>> {
-        let hooks = self.hooks.iter().map(closures::Hook::as_name);
         let options = build::Options {
             mode: of.mode,
             skip: self.options.skip.clone(),
-            hooks: hooks.collect(),
+            hooks: self.hooks.clone(),
             zero_user: self.options.zero_user,
             shells: self.shells.clone().unwrap_or_default(),
             ..build::Options::default()

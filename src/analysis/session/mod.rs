@@ -58,6 +58,7 @@ use crate::model::{ElementId, ElementKind, Model};
 use crate::results::{Event, Run, Status};
 use crate::scene::contacts::Shell;
 use crate::scene::equations::Unsupported;
+use crate::scene::external_inputs::closure_for;
 use crate::scene::unknown::UnknownId;
 use carried::Carried;
 pub use catalogue::check_column;
@@ -349,10 +350,10 @@ impl Session {
     /// Chooses the columns of the results, before there are any rows.
     fn choose_columns(&mut self) {
         self.options.choose_in(&self.model);
-        let names: Vec<_> = self.hooks.iter().map(closures::Hook::as_name).collect();
+        let hooks = &self.hooks;
         let known = |id: u32, user: &crate::model::Formula| {
             let element = ElementKind::Request.id(id);
-            names.iter().any(|n| n.stands_for(element, user))
+            closure_for(hooks, element, user).is_some()
         };
         let (run, options) = (&mut self.run, &self.options);
         self.columns = Columns::chosen(

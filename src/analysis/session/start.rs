@@ -17,8 +17,8 @@ use crate::analysis::start::{
     coincident, embedded, initial_conditions, leap, misalignment, velocities,
 };
 use crate::analysis::system::external_inputs::ExternalInputs;
+use crate::analysis::system::samples;
 use crate::analysis::system::{Purpose, System, complaints};
-use crate::analysis::system::{closures, samples};
 use crate::analysis::verify::culprit::blamed;
 use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::analysis::watch::Watch;
@@ -172,7 +172,6 @@ impl Session {
         mode: u32,
         inputs: &[u32],
     ) -> Result<(Arc<Scene>, Option<Model>), Vec<Diagnostic>> {
-        let hooks = self.hooks.iter().map(closures::Hook::as_name);
         let mut extra = self.columns.extra.clone();
         extra.extend(spline_calls(&self.model).iter().map(SplineCall::extra));
         let mut options = build::Options {
@@ -180,7 +179,7 @@ impl Session {
             extra,
             variables: self.columns.show_joint_variables(),
             skip: self.options.skip.clone(),
-            hooks: hooks.collect(),
+            hooks: self.hooks.clone(),
             zero_user: self.options.zero_user,
             plant_inputs: inputs.to_vec(),
             changing: self.changing.clone(),

@@ -11,62 +11,14 @@ use crate::physics::contact::curves::Curves;
 use crate::scalar::Dual;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::{Lack, Unsupported};
-use crate::scene::external_inputs::{ExternalInput, HookKind, HookName, SceneHook};
+pub use crate::scene::external_inputs::{Call, Hook, Law};
+use crate::scene::external_inputs::{ExternalInput, HookKind, SceneHook};
 use crate::scene::layout::Layout;
 use crate::scene::programs::record;
 use crate::scene::slopes::WIDTH;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// The arguments of a closure.
-#[derive(Clone, Copy, Debug)]
-pub struct Call<'a> {
-    /// TIME
-    pub time: f64,
-    /// the element that asks
-    pub element: ElementId,
-    /// the numbers of `USER(…)`
-    pub constants: &'a [f64],
-    /// values of the expressions that the closure was registered with; for a GSE followed by its
-    /// states, inputs and discrete states
-    pub values: &'a [f64],
-}
-
-/// A closure: fills in the results, which are zero when it is called.
-///
-/// One number for SFORCE, VARIABLE, DIFF or SENSOR; FX, FY, FZ, TX, TY, TZ for GFORCE, three for
-/// VFORCE and VTORQUE; the value and its first two derivatives in time for MOTION; eight components
-/// for REQUEST; rates of the states, then outputs, then what the discrete states are from the next
-/// sample on, for GSE.
-pub type Law = dyn Fn(&Call<'_>, &mut [f64]) + Send + Sync;
-
-/// A closure under its name.
-#[derive(Clone)]
-pub struct Hook {
-    /// an element ("SFORCE/3"), the text of ROUTINE, or the first number of USER
-    pub name: String,
-    /// expressions whose values it is given
-    pub inputs: Vec<String>,
-    /// the closure
-    pub law: Arc<Law>,
-}
-
-impl Hook {
-    /// Returns the part of it that the scene knows.
-    pub fn as_name(&self) -> HookName {
-        HookName {
-            name: self.name.clone(),
-            inputs: self.inputs.clone(),
-        }
-    }
-}
-
-impl fmt::Debug for Hook {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Hook({} of {:?})", self.name, self.inputs)
-    }
-}
 
 /// A closure that can be printed.
 #[derive(Clone)]
@@ -82,6 +34,12 @@ impl fmt::Debug for Callable {
 fn law(kind: &HookKind, element: ElementId, hooks: &[Hook]) -> Result<Callable, Vec<Unsupported>> {
     match kind {
         HookKind::User { closure, .. } => Ok(Callable(hooks[*closure].law.clone())),
+        HookKind::Touched(touched) => Ok(Callable(hooks[touched.closure].law.clone())),
+        HookKind::Coupled(coupled) => {
+            let coupled = coupled.clone();
+            let ask = move |call: &Call<'_>, out: &mut [f64]| coupled.expand(call.values, out);
+            Ok(Callable(Arc::new(ask)))
+        }
         HookKind::Touches { question, .. } => match question {
             Question::Outlines([i, j]) => {
                 let curves = Curves::new(i.clone(), j.clone());
@@ -138,6 +96,13 @@ impl Bound {
     ) -> Result<Self, Vec<Unsupported>> {
         let inputs = record(scene, |at| match &hook.kind {
             HookKind::User { inputs, .. } => inputs.iter().map(|&f| at.formula(f)).collect(),
+            HookKind::Touched(touched) => touched.numbers(at),
+            HookKind::Coupled(coupled) => {
+                let all = coupled.displacements.iter();
+                all.map(|d| at.displacement(d).value)
+                    .chain([at.time()])
+                    .collect()
+            }
             HookKind::Touches { markers, .. } => {
                 let [i, j] = markers.map(|m| at.marker(m));
                 let place = j.R_GM.apply_transposed(i.p_GM - j.p_GM);
@@ -151,7 +116,9 @@ impl Bound {
             return Err(vec![Unsupported::new(hook.element, Lack::OwnResult)]);
         }
         let reads = match &hook.kind {
-            HookKind::User { .. } => vec![true; inputs.n_outputs()],
+            HookKind::User { .. } | HookKind::Coupled(_) | HookKind::Touched(_) => {
+                vec![true; inputs.n_outputs()]
+            }
             HookKind::Touches { question, .. } => {
                 (0..inputs.n_outputs()).map(|k| question.reads(k)).collect()
             }

@@ -54,7 +54,7 @@ fn about(axis: Vec3<f64>, angle: f64) -> Mat3<f64> {
 
 /// Finds the forces that feed energy into the motion of their I marker.
 pub(in crate::analysis) fn driving(scene: &Scene, model: &Model) -> Vec<Diagnostic> {
-    let (bindings, _) = formula::bindings(model);
+    let (bindings, _) = formula::bindings(model, &[]);
     let components = components(scene, model);
     let found = components.iter().filter_map(|c| {
         let [rate, place, force] = if c.turns {

@@ -228,7 +228,7 @@ fn stand_still(model: &mut Model, warnings: &mut Vec<Warning>) {
 /// Constraints that a routine computes, or whose curve does not stand in the dataset, are counted,
 /// but cannot be among the rows: nobody knows what they hold.
 fn leave_out_unknown(model: &mut Model, warnings: &mut Vec<Warning>) {
-    for unknown in unknown_constraints(model) {
+    for unknown in unknown_constraints(model, &[]) {
         let Unknown { id, hidden } = unknown;
         let counted = VerificationWarning::UnknownConstraint {
             element: id,

@@ -114,7 +114,7 @@ pub(super) static PAGES: &[Page] = &[
             f("JOINTS", "Two or three REVOLUTE, TRANSLATIONAL or CYLINDRICAL joints."),
             f("TYPE", "T (translation) or R (rotation) for each joint, between colons: needed for CYLINDRICAL joints."),
             n("SCALES", "", "1 for the first", "r1, r2 and r3; with one number fewer than joints r1 is 1."),
-            f("FUNCTION", "USER(…): the sum is computed by a routine."),
+            f("FUNCTION", "USER(…): what is zero instead of the sum is computed by a routine, COUSUB."),
             ROUTINE,
         ],
         example: "gears",

@@ -1,5 +1,6 @@
 //! The data that expressions read: splines, families of curves over z, and curves in space.
 
+use super::computed::{self, Component, Computed, Point};
 use crate::diagnostic::counted;
 use crate::expr::spline::{Ends, Extrapolation, Piecewise, UnfitData, check};
 use crate::scalar::{Scalar, Table};
@@ -161,7 +162,7 @@ pub enum CurvePoints {
 /// Distance of the ends of a closed curve, as a part of its size, at which they meet.
 pub const CLOSING_TOLERANCE: f64 = 1e-9;
 
-/// A curve in space over a parameter from −1 to 1; outside it has no value.
+/// A curve in space over a parameter, from −1 to 1 unless it is computed; outside it has no value.
 ///
 /// A curve through its points is a cubic spline over the length of the polygon of the points,
 /// natural or (closed) periodic.
@@ -171,7 +172,7 @@ pub struct Curve {
     pub(super) components: [Arc<dyn Table>; 3],
     /// whether it returns to its beginning
     closed: bool,
-    /// parameters between which it is one polynomial
+    /// parameters between which it is smooth
     knots: Vec<f64>,
 }
 
@@ -259,7 +260,48 @@ impl Curve {
         })
     }
 
-    /// Returns the parameters, ascending from −1 to 1, between which it is one polynomial.
+    /// Creates it from what computes its points and their first two derivatives, between two
+    /// parameters.
+    ///
+    /// # Errors
+    /// When the parameters do not ascend, a closed curve is not closed, or the derivatives are not
+    /// those of the points.
+    pub fn computed(
+        point: Arc<Point>,
+        closed: bool,
+        [low, high]: [f64; 2],
+    ) -> Result<Self, UnfitData> {
+        let range = high - low;
+        if !(range.is_finite() && range > 0.0) {
+            return Err(UnfitData(format!(
+                "its parameter goes from {low} to {high}; MINPAR must be smaller than MAXPAR"
+            )));
+        }
+        computed::check(&*point, closed, [low, high])?;
+        let source = Arc::new(Computed::new(point, [low, high]));
+        let component = |axis: usize| -> Arc<dyn Table> {
+            Arc::new(Component {
+                source: source.clone(),
+                axis,
+            })
+        };
+        Ok(Self {
+            components: [0, 1, 2].map(component),
+            closed,
+            knots: vec![low, high],
+        })
+    }
+
+    /// Returns the first and the last parameter.
+    pub fn range(&self) -> [f64; 2] {
+        let ends = [self.knots.first(), self.knots.last()];
+        [
+            ends[0].copied().unwrap_or(-1.0),
+            ends[1].copied().unwrap_or(1.0),
+        ]
+    }
+
+    /// Returns the parameters, ascending, between which it is smooth.
     pub fn knots(&self) -> &[f64] {
         &self.knots
     }

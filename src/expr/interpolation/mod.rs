@@ -1,8 +1,10 @@
 //! The TABLE of functions that look data up by identifier: AKISPL, CUBSPL, INTERP, CURVE, INVPSD.
 //!
-//! `data.rs` holds the splines and curves that they read, `bindings.rs` finds them for a call.
+//! `data.rs` holds the splines and curves that they read, `computed.rs` curves of code that is no
+//! formula, `bindings.rs` finds them for a call.
 
 mod bindings;
+pub(crate) mod computed;
 mod data;
 
 pub use bindings::{Bindings, Bound};

@@ -98,7 +98,7 @@ fn contacts(model: &Model, out: &mut Out) {
             ContactLaw::Poisson => not_read(out, who(), &impact, "they are for IMPACT"),
             ContactLaw::User => {}
         }
-        if c.friction == CoulombFriction::Off && c.law != ContactLaw::User {
+        if c.friction == CoulombFriction::Off && c.friction_function.is_none() {
             let friction = [
                 ("MU_STATIC", c.mu_static != 0.0),
                 ("MU_DYNAMIC", c.mu_dynamic != 0.0),

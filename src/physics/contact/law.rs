@@ -141,12 +141,34 @@ impl Coulomb {
     }
 }
 
+/// Forces at a touch that a routine computes, which hold where the solids touch.
+#[derive(Clone, Copy, Debug)]
+pub struct Given<S> {
+    /// along the normal
+    pub normal: Option<S>,
+    /// across it, on I's solid, in ground axes
+    pub friction: Option<Vec3<S>>,
+}
+
 impl Law {
     /// Returns the force on I's solid at a touch, in ground axes.
-    pub fn force<S: Scalar>(&self, depth: S, normal: Vec3<S>, velocity: Vec3<S>) -> Vec3<S> {
+    pub fn force<S: Scalar>(
+        &self,
+        depth: S,
+        normal: Vec3<S>,
+        velocity: Vec3<S>,
+        given: Given<S>,
+    ) -> Vec3<S> {
         let along = velocity.dot(normal);
-        let n = self.normal.force(depth, -along);
+        let touching = S::zero().lt(depth);
+        let n = match given.normal {
+            Some(n) => S::select(touching, n, S::zero()),
+            None => self.normal.force(depth, -along),
+        };
         let force = normal.times(n);
+        if let Some(friction) = given.friction {
+            return force + Vec3(friction.0.map(|f| S::select(touching, f, S::zero())));
+        }
         match &self.friction {
             None => force,
             Some(coulomb) => {

@@ -35,7 +35,7 @@ pub mod wire;
 use super::action::Action;
 use crate::scalar::Scalar;
 use crate::space::{MarkerState, Vec3};
-pub use law::Law;
+pub use law::{Given, Law};
 use outline::Outline;
 use std::sync::Arc;
 
@@ -274,18 +274,139 @@ impl Pair {
     }
 }
 
+/// A touch as a routine of the force along the normal is given it.
+#[derive(Clone, Copy, Debug)]
+pub struct Pressing<S> {
+    /// distance of the solids: negative where they overlap
+    pub gap: S,
+    /// its rate
+    pub gap_rate: S,
+    /// the point and the normal of I's solid, outwards, in the frame of I's marker
+    pub on_i: [Vec3<S>; 2],
+    /// the same of J's
+    pub on_j: [Vec3<S>; 2],
+}
+
+/// A touch as a routine of friction is given it.
+#[derive(Clone, Copy, Debug)]
+pub struct Slipping<S> {
+    /// force along the normal
+    pub normal_force: S,
+    /// velocity of I's solid against J's across the normal, ground axes
+    pub velocity: Vec3<S>,
+    /// the point in the frames of I's and of J's marker
+    pub points: [Vec3<S>; 2],
+}
+
+impl<S: Scalar> Pressing<S> {
+    /// Returns what a touch is between two markers.
+    pub fn of(touch: &Touch<S>, i: &MarkerState<S>, j: &MarkerState<S>) -> Self {
+        let seen = |m: &MarkerState<S>, normal: Vec3<S>| {
+            [
+                m.R_GM.apply_transposed(touch.point - m.p_GM),
+                m.R_GM.apply_transposed(normal),
+            ]
+        };
+        Self {
+            gap: -touch.depth,
+            gap_rate: touch.velocity(i, j).dot(touch.normal),
+            on_i: seen(i, -touch.normal),
+            on_j: seen(j, touch.normal),
+        }
+    }
+
+    /// Returns its numbers, in the order of the fields.
+    pub fn numbers(&self) -> impl Iterator<Item = S> {
+        let vectors = [self.on_i, self.on_j].concat();
+        let rest = vectors.into_iter().flat_map(|v| v.0);
+        [self.gap, self.gap_rate].into_iter().chain(rest)
+    }
+}
+
+impl Pressing<f64> {
+    /// Numbers of each.
+    pub const LEN: usize = 14;
+
+    /// Returns what the numbers of one are.
+    pub fn from_numbers(x: &[f64; Self::LEN]) -> Self {
+        let vector = |k: usize| Vec3([x[k], x[k + 1], x[k + 2]]);
+        Self {
+            gap: x[0],
+            gap_rate: x[1],
+            on_i: [vector(2), vector(5)],
+            on_j: [vector(8), vector(11)],
+        }
+    }
+}
+
+impl<S: Scalar> Slipping<S> {
+    /// Returns what a touch is between two markers.
+    pub fn of(touch: &Touch<S>, normal_force: S, i: &MarkerState<S>, j: &MarkerState<S>) -> Self {
+        let velocity = touch.velocity(i, j);
+        Self {
+            normal_force,
+            velocity: velocity - touch.normal.times(velocity.dot(touch.normal)),
+            points: [i, j].map(|m| m.R_GM.apply_transposed(touch.point - m.p_GM)),
+        }
+    }
+
+    /// Returns its numbers, in the order of the fields.
+    pub fn numbers(&self) -> impl Iterator<Item = S> {
+        let vectors = [self.velocity, self.points[0], self.points[1]];
+        let rest = vectors.into_iter().flat_map(|v| v.0);
+        [self.normal_force].into_iter().chain(rest)
+    }
+}
+
+impl Slipping<f64> {
+    /// Numbers of each.
+    pub const LEN: usize = 10;
+
+    /// Returns what the numbers of one are.
+    pub fn from_numbers(x: &[f64; Self::LEN]) -> Self {
+        let vector = |k: usize| Vec3([x[k], x[k + 1], x[k + 2]]);
+        Self {
+            normal_force: x[0],
+            velocity: vector(1),
+            points: [vector(4), vector(7)],
+        }
+    }
+}
+
+/// Forces that routines compute, touch by touch; none where the law says them.
+#[derive(Clone, Copy, Debug)]
+pub struct Outside<'a, S> {
+    /// along the normal: one number each
+    pub normal: &'a [S],
+    /// across it: three each, ground axes
+    pub friction: &'a [S],
+}
+
+impl<S: Scalar> Touch<S> {
+    /// Returns the velocity of I's solid against J's where they touch.
+    fn velocity(&self, i: &MarkerState<S>, j: &MarkerState<S>) -> Vec3<S> {
+        let (to_i, to_j) = (self.point - i.p_GM, self.point - j.p_GM);
+        i.v_GM + i.w_GM.cross(to_i) - j.v_GM - j.w_GM.cross(to_j)
+    }
+}
+
 /// Returns the action of the touches on I, about its origin.
 pub fn action<S: Scalar>(
     touches: &[Touch<S>],
     law: &Law,
+    outside: Outside<'_, S>,
     i: &MarkerState<S>,
     j: &MarkerState<S>,
 ) -> Action<S> {
     let mut sum = Action::zero();
-    for touch in touches {
-        let (to_i, to_j) = (touch.point - i.p_GM, touch.point - j.p_GM);
-        let velocity = i.v_GM + i.w_GM.cross(to_i) - j.v_GM - j.w_GM.cross(to_j);
-        let force = law.force(touch.depth, touch.normal, velocity);
+    for (k, touch) in touches.iter().enumerate() {
+        let to_i = touch.point - i.p_GM;
+        let friction = outside.friction.get(3 * k..3 * k + 3);
+        let given = Given {
+            normal: outside.normal.get(k).copied(),
+            friction: friction.map(|f| Vec3([f[0], f[1], f[2]])),
+        };
+        let force = law.force(touch.depth, touch.normal, touch.velocity(i, j), given);
         let force = force.times(touch.share);
         sum = sum.plus(&Action {
             force,

@@ -148,7 +148,7 @@ fn form(model: &Model, shape: &Shape, surface: Option<&Surface>, size: f64) -> O
 
 /// Returns a CURVE as a line of points; `None` where its data cannot be read.
 fn curve(model: &Model, id: u32) -> Option<Form> {
-    let curve = curve_of(model, id).ok()?;
+    let curve = curve_of(model, &[], id).ok()?;
     let n = if curve.is_closed() {
         CURVE_POINTS
     } else {

@@ -6,6 +6,7 @@ use crate::diagnostic::Subject;
 use crate::physics::action::Action;
 use crate::physics::row::{Drive, Law};
 use crate::scalar::{Dual, Jet, Scalar};
+use crate::scene::coupled::Coupled;
 use crate::scene::{CoordinateSum, Displacement, Row, RowKind, Source, Sum};
 use crate::space::{Frame, MarkerState, Mat3, Vec3};
 use std::rc::Rc;
@@ -177,36 +178,23 @@ impl<S: Scalar> Equations<'_, S> {
     /// A sum of displacements: each a sum of coordinates where it can be, else by duals along
     /// twists and jets in time.
     pub(super) fn sum_row(&self, sum: &Sum, constant: f64) -> RowValue<S> {
+        if let Some(coupled) = &sum.coupled {
+            return self.coupled_row(coupled);
+        }
         let mut value = S::constant(-constant);
         let (mut drift, mut second) = (S::zero(), S::zero());
         let mut gradient: Vec<(usize, S)> = Vec::new();
         let mut actions = Vec::with_capacity(2 * sum.terms.len());
-        let add = |gradient: &mut Vec<(usize, S)>, v: usize, g: S| match gradient
-            .iter_mut()
-            .find(|e| e.0 == v)
-        {
-            Some(entry) => entry.1 += g,
-            None => gradient.push((v, g)),
-        };
         let mut linear = true;
         for (factor, d) in &sum.terms {
             let own = self.displacement(d);
             value += own.value.scale(*factor);
-            for (m, a) in &own.actions {
-                let factor = S::constant(*factor);
-                actions.push((
-                    *m,
-                    Action {
-                        force: a.force.times(factor),
-                        torque: a.torque.times(factor),
-                    },
-                ));
-            }
+            actions.extend(times(&own.actions, S::constant(*factor)));
             linear &= d.coordinates.is_some();
             drift += own.drift.scale(*factor);
             second -= own.gamma.scale(*factor);
             for &(v, g) in &own.gradient {
-                add(&mut gradient, v, g.scale(*factor));
+                add_to(&mut gradient, v, g.scale(*factor));
             }
         }
         if let Some(contact) = sum.contact {
@@ -231,8 +219,59 @@ impl<S: Scalar> Equations<'_, S> {
         }
     }
 
+    /// A constraint of displacements that a closure computes, by its expansion about where they are
+    /// (1).
+    fn coupled_row(&self, coupled: &Coupled) -> RowValue<S> {
+        let own: Vec<RowValue<S>> = (coupled.displacements.iter())
+            .map(|d| self.displacement(d))
+            .collect();
+        let mut x: Vec<S> = own.iter().map(|d| d.value).collect();
+        x.push(self.now.t);
+        let numbers = match x.iter().map(Scalar::known).collect::<Option<Vec<f64>>>() {
+            Some(x) => {
+                let mut numbers = vec![0.0; coupled.numbers()];
+                coupled.expand(&x, &mut numbers);
+                numbers.into_iter().map(S::constant).collect()
+            }
+            None => self.external(coupled.places.clone()).to_vec(),
+        };
+        let (n, places) = (coupled.n(), coupled.partials());
+        let (x0, partials) = numbers.split_at(n);
+        let away: Vec<S> = x.iter().zip(x0).map(|(x, x0)| *x - *x0).collect();
+        let rate = |k: usize| own.get(k).map_or(S::one(), |d| self.row_rate(d));
+        let rates: Vec<S> = (0..n).map(rate).collect();
+        let mut row = RowValue {
+            value: partials[0],
+            gradient: Vec::new(),
+            drift: S::zero(),
+            gamma: S::zero(),
+            actions: Vec::new(),
+        };
+        for k in 0..n {
+            let (mut slope, g) = (partials[places.first(k)], partials[places.first(k)]);
+            for l in 0..n {
+                let h = partials[places.second(k, l)];
+                slope += h * away[l];
+                row.gamma -= h * rates[k] * rates[l];
+            }
+            row.value += (g + slope).scale(0.5) * away[k];
+            let Some(d) = own.get(k) else {
+                row.drift += slope;
+                continue;
+            };
+            row.drift += slope * d.drift;
+            row.gamma += slope * d.gamma;
+            d.gradient
+                .iter()
+                .for_each(|&(v, g)| add_to(&mut row.gradient, v, slope * g));
+            row.actions.extend(times(&d.actions, slope));
+        }
+        row.gradient.arrange_by_key(|g| g.0);
+        row
+    }
+
     /// A distance or an angle with its gradient and rates.
-    pub(super) fn displacement(&self, d: &Displacement) -> RowValue<S> {
+    pub fn displacement(&self, d: &Displacement) -> RowValue<S> {
         let (I, J) = (self.marker(d.i), self.marker(d.j));
         let seeded = d.gauge.value(&seed::<12, S>(&I, 0), &seed::<12, S>(&J, 6));
         let actions = vec![(d.i, twist(&seeded, 0)), (d.j, twist(&seeded, 6))];
@@ -333,12 +372,28 @@ impl<S: Scalar> Equations<'_, S> {
             if component.is_known_zero() {
                 continue;
             }
-            match sum.iter_mut().find(|s| s.0 == v) {
-                Some(entry) => entry.1 += component,
-                None => sum.push((v, component)),
-            }
+            add_to(sum, v, component);
         }
     }
+}
+
+/// Adds a component to that along a velocity.
+fn add_to<S: Scalar>(gradient: &mut Vec<(usize, S)>, v: usize, component: S) {
+    match gradient.iter_mut().find(|entry| entry.0 == v) {
+        Some(entry) => entry.1 += component,
+        None => gradient.push((v, component)),
+    }
+}
+
+/// Returns actions, each so many times.
+fn times<S: Scalar>(
+    actions: &[(usize, Action<S>)],
+    factor: S,
+) -> impl Iterator<Item = (usize, Action<S>)> {
+    actions.iter().map(move |(m, a)| {
+        let (force, torque) = (a.force.times(factor), a.torque.times(factor));
+        (*m, Action { force, torque })
+    })
 }
 
 /// A row of G with its right sides. An equation of velocities stands at the level of ġ: its value

@@ -1,0 +1,59 @@
+C     Constraints and contacts: what constraints.c has.
+      SUBROUTINE COUSUB(ID, TIME, PAR, NPAR, DISP, NDISP, IFLAG, PHI)
+      INTEGER ID, NPAR, NDISP
+      DOUBLE PRECISION TIME, PAR(*), DISP(NDISP), PHI
+      LOGICAL IFLAG
+      PHI = DISP(2) + 0.5D0*DISP(1)*DISP(2) - PAR(1)*SIN(DISP(1))
+      END
+C
+      SUBROUTINE CURSUB(ID, PAR, NPAR, ALPHA, IORD, IFLAG, VALUES)
+      INTEGER ID, NPAR, IORD
+      DOUBLE PRECISION PAR(*), ALPHA, VALUES(3), X, Y
+      LOGICAL IFLAG
+      X = PAR(1)*COS(ALPHA)
+      Y = PAR(1)*SIN(ALPHA)
+      IF (IORD .EQ. 0) THEN
+         VALUES(1) = X
+         VALUES(2) = Y
+      ELSE IF (IORD .EQ. 1) THEN
+         VALUES(1) = -Y
+         VALUES(2) = X
+      ELSE
+         VALUES(1) = -X
+         VALUES(2) = -Y
+      END IF
+      END
+C
+      DOUBLE PRECISION FUNCTION STEP3(X, X0, H0, X1, H1)
+      DOUBLE PRECISION X, X0, H0, X1, H1, U
+      U = MIN(1D0, MAX(0D0, (X - X0)/(X1 - X0)))
+      STEP3 = H0 + (H1 - H0)*U*U*(3D0 - 2D0*U)
+      END
+C
+      SUBROUTINE CNFSUB(ID, TIME, PAR, NPAR, LOCI, NI, LOCJ, NJ, GAP,
+     &                  GAPDOT, GAPDDT, AREA, DFLAG, IFLAG, FORCE)
+      INTEGER ID, NPAR
+      DOUBLE PRECISION TIME, PAR(*), LOCI(3), NI(3), LOCJ(3), NJ(3)
+      DOUBLE PRECISION GAP, GAPDOT, GAPDDT, AREA, FORCE(3), G, STEP3
+      LOGICAL DFLAG, IFLAG
+      IF (GAP .GE. 0D0) RETURN
+      G = -GAP
+      FORCE(1) = PAR(1)*G**PAR(2)
+     &           - STEP3(G, 0D0, 0D0, PAR(4), PAR(3))*GAPDOT
+      FORCE(1) = MAX(0D0, FORCE(1))
+      END
+C
+      SUBROUTINE CFFSUB(ID, TIME, PAR, NPAR, LOCI, LOCJ, X, XDOT,
+     &                  NFORCE, AREA, DFLAG, IFLAG, FORCE)
+      INTEGER ID, NPAR
+      DOUBLE PRECISION TIME, PAR(*), LOCI(3), LOCJ(3), X(3), XDOT(3)
+      DOUBLE PRECISION NFORCE, AREA, FORCE(3), V, MU, STEP3
+      LOGICAL DFLAG, IFLAG
+      V = XDOT(1)
+      IF (V .LT. PAR(3)) THEN
+         MU = STEP3(V, -PAR(3), -PAR(1), PAR(3), PAR(1))
+      ELSE
+         MU = STEP3(V, PAR(3), PAR(1), PAR(4), PAR(2))
+      END IF
+      FORCE(1) = -MU*NFORCE
+      END
