@@ -1,6 +1,7 @@
 //! `cognate sweep`: one model many times, and a table of what came of it.
 
 use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, threads};
+use super::inputs::InputArgs;
 use super::progress::Progress;
 use super::recorded;
 use super::render::Sources;
@@ -66,6 +67,8 @@ pub struct Args {
     out: Option<PathBuf>,
     #[command(flatten)]
     writing: WritingArgs,
+    #[command(flatten)]
+    inputs: InputArgs,
     #[command(flatten)]
     span: SpanArgs,
     #[command(flatten)]
@@ -171,7 +174,7 @@ fn table_path(args: &Args) -> Result<(Option<PathBuf>, Option<PathBuf>), Failure
 
 /// Reads the model and its commands; returns the base of the names of files as well.
 fn open(args: &Args) -> Result<(Sweep, String), Failure> {
-    let job = if run::has_commands(&args.model) {
+    let mut job = if run::has_commands(&args.model) {
         args.span.refuse_beside(&args.model)?;
         run::script(&args.model, None)?
     } else {
@@ -182,12 +185,13 @@ fn open(args: &Args) -> Result<(Sweep, String), Failure> {
             span: args.span,
         })?
     };
+    args.inputs.drive_told(&mut job.reading.model, args.quiet)?;
     let model = job.reading.model.clone();
     if let Err(error) = model.checked() {
         return Err(Failure::in_model(&job.reading.dataset, error));
     }
     let mut sweep = Sweep::new(model, job.steps);
-    if job.loads.is_none() {
+    if job.loads.is_none() && !args.inputs.is_given() {
         sweep = sweep.with_design_variables(&job.reading);
     }
     let options = args.integration.given_to(Options::default());
