@@ -7,6 +7,10 @@
 use crate::diagnostic::counted;
 use crate::scalar::Table;
 
+/// Least distance of a corner from the line between its neighbours, over the range of the values: a
+/// step over smaller ones meets requests that are no tighter.
+const CORNER: f64 = 1e-6;
+
 /// The end conditions of a cubic spline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Ends {
@@ -308,6 +312,21 @@ impl Piecewise {
         (self.knots[0], self.knots[self.knots.len() - 1])
     }
 
+    /// Returns whether straight pieces meet in corners: their ends lie off the line between their
+    /// neighbours, by more than those of a smooth function drawn finely.
+    fn has_corners(&self) -> bool {
+        let values = || self.knots.iter().map(|&x| self.at(x, 0));
+        let (lo, hi) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), y| {
+            (lo.min(y), hi.max(y))
+        });
+        let mut places = self.knots.windows(3);
+        places.any(|x| {
+            let [before, after] = [false, true].map(|above| self.beside(x[1], above, 1));
+            let (h, k) = (x[1] - x[0], x[2] - x[1]);
+            (after - before).abs() * h * (k / (h + k)) > CORNER * (hi - lo)
+        })
+    }
+
     /// Returns the knots.
     pub fn knots(&self) -> &[f64] {
         &self.knots
@@ -374,8 +393,12 @@ impl Table for Piecewise {
     fn knots(&self) -> &[f64] {
         &self.knots
     }
-    fn jumps(&self) -> bool {
-        self.degree == 0
+    fn is_sharp(&self) -> bool {
+        match self.degree {
+            0 => true,
+            1 => self.has_corners(),
+            _ => false,
+        }
     }
     fn beside(&self, x: f64, above: bool, order: u32) -> f64 {
         // pieces count from the one below all knots

@@ -89,8 +89,8 @@ pub trait Table: Debug + Send + Sync {
         let _ = above;
         self.at(x, order)
     }
-    /// Returns whether its value jumps where pieces meet.
-    fn jumps(&self) -> bool {
+    /// Returns whether its value or its slope jumps where pieces meet.
+    fn is_sharp(&self) -> bool {
         false
     }
 }

@@ -47,15 +47,19 @@ pub fn drive_inputs(model: &mut Model, file: &Path, between: Between) -> Result<
     })?;
     let mut mistakes = Mistakes::new(&name);
     let table = Table::read(&as_utf8(bytes), model, &mut mistakes);
-    let variables = table.variables(model, &mut mistakes);
     mistakes.none()?;
-    for (&variable, samples) in variables.iter().zip(&table.samples) {
+    for (&variable, samples) in table.variables.iter().zip(&table.samples) {
         let function = function_of(model, (&table.times, samples), between);
         if let Some(variable) = model.variables.get_mut(&variable) {
             variable.function = function;
         }
     }
-    Ok(driven(model, &variables, (&name, &table.times), between))
+    Ok(driven(
+        model,
+        &table.variables,
+        (&name, &table.times),
+        between,
+    ))
 }
 
 /// Returns a note about inputs of plants that stay as their functions say: constants, and USER.
@@ -203,7 +207,7 @@ impl<'a> Mistakes<'a> {
     fn none(mut self) -> Result<(), Error> {
         if let (Some(last), true) = (self.found.last_mut(), self.further > 0) {
             let further = counted(self.further, "further mistake");
-            last.help.push(format!("the table has {further}"));
+            last.help.push(format!("the table has at least {further}"));
         }
         match self.found.is_empty() {
             true => Ok(()),
@@ -219,6 +223,8 @@ struct Table {
     line: usize,
     /// names of the inputs
     names: Vec<String>,
+    /// numbers of the VARIABLEs that they name
+    variables: Vec<u32>,
     times: Vec<f64>,
     /// by input
     samples: Vec<Vec<f64>>,
@@ -241,6 +247,7 @@ impl Table {
             };
             if table.line == 0 {
                 table.begin(line, cells, mistakes);
+                table.variables = table.named(model, mistakes);
                 is_second = true;
                 continue;
             }
@@ -313,7 +320,7 @@ impl Table {
     }
 
     /// Returns the VARIABLEs that the columns name.
-    fn variables(&self, model: &Model, mistakes: &mut Mistakes<'_>) -> Vec<u32> {
+    fn named(&self, model: &Model, mistakes: &mut Mistakes<'_>) -> Vec<u32> {
         let inputs = inputs(model);
         if inputs.is_empty() {
             let d = Diagnostic::error("input_table", "the model has no inputs: it has no PINPUT");
@@ -327,8 +334,7 @@ impl Table {
         let mut all = Vec::new();
         for name in &self.names {
             if mistakes.found.len() >= MOST_MISTAKES {
-                mistakes.further += 1;
-                continue;
+                break;
             }
             match input_called(model, &inputs, name) {
                 Err(d) => mistakes.add(self.line, d),
