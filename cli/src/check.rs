@@ -200,7 +200,12 @@ pub fn sources(reading: &Reading) -> Sources {
 
 fn add(sources: &mut Sources, reading: &Reading) {
     let source = &reading.dataset.source;
-    sources.add(source.file.clone().unwrap_or_default(), source.text.clone());
+    sources.add(source.file.clone().unwrap_or_default(), source.own_text());
+    for file in source.included() {
+        if let Ok(included) = dataset::open(disk::path(file)) {
+            sources.add(file, included.text);
+        }
+    }
 }
 
 /// Turns mistakes of a file into the failure of a command.

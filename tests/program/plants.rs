@@ -466,7 +466,11 @@ fn a_sweep_and_a_linear_system_have_the_inputs_of_the_table() {
         &measure,
     ]
     .concat());
-    assert!(done.err.contains("push' and VARIABLE/8 follow"), "{}", done.err);
+    assert!(
+        done.err.contains("push' and VARIABLE/8 follow"),
+        "{}",
+        done.err
+    );
     let rows = cognate::results::read(out.as_ref()).unwrap();
     assert_eq!(rows.column("last(PINVAL(1,1))").unwrap(), [2.0, 2.0]);
 
