@@ -1,11 +1,15 @@
 //! `--input`: inputs of plants from a table over time.
 
+use super::recorded::beside;
 use super::run::Job;
 use super::{Exit, Failure, remark};
 use cognate::diagnostic::Diagnostic;
+use cognate::disk;
 use cognate::model::Model;
+use cognate::results::InputTable;
 use cognate::setup::{Between, drive_inputs, undriven_inputs};
-use std::path::PathBuf;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
 
 /// The table that drives the inputs of plants.
 #[derive(clap::Args, Clone, Debug, Default)]
@@ -24,6 +28,28 @@ impl InputArgs {
     /// Returns whether a table is given.
     pub fn is_given(&self) -> bool {
         self.input.is_some()
+    }
+
+    /// Returns the table for the record of a run.
+    pub fn table(&self) -> Option<InputTable> {
+        let file = self.input.as_ref()?;
+        let (file, held) = (disk::text(file), self.input_hold);
+        Some(InputTable { file, held })
+    }
+
+    /// Returns these options, else those of a run with this record, which lies beside the results.
+    pub fn or_recorded(&self, record: Option<&Value>, results: &Path) -> Self {
+        let inputs = record.map(|record| &record["inputs"]);
+        let Some(file) = inputs.and_then(|inputs| inputs["file"].as_str()) else {
+            return self.clone();
+        };
+        match self.is_given() {
+            true => self.clone(),
+            false => Self {
+                input: Some(beside(results, &disk::path(file))),
+                input_hold: inputs.is_some_and(|inputs| inputs["held"] == true),
+            },
+        }
     }
 
     /// Gives a model its inputs; returns a note of where they come from, if it has any that are

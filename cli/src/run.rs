@@ -135,8 +135,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
 
     // read
     let is_command = has_commands(&args.model);
-    let mut job = job(args, is_command)?;
-    args.inputs.drive_job(&mut job)?;
+    let job = job(args, is_command)?;
     let args = &args.completed(&job.setup)?;
     let [read, about_mechanism] = doubted::remark_on(&job, args.quiet);
     if !args.quiet {
@@ -151,6 +150,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     let seconds = &mut session.run.record.seconds;
     seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;
+    session.run.record.inputs = args.inputs.table();
     let doubts: Vec<_> = read.iter().chain(&about_mechanism).cloned().collect();
     note_doubts(&mut session, &doubts);
     let shown = !args.json && !args.quiet;
@@ -235,8 +235,15 @@ fn open_pages(written: &[PathBuf]) {
     (written.iter().filter(is_page)).for_each(|file| super::animate::open(file));
 }
 
-/// Reads the model of a run and its commands, with the loads that are asked for.
+/// Reads the model of a run and its commands, with the loads and inputs that are asked for.
 fn job(args: &Args, is_command: bool) -> Result<Job, Failure> {
+    let mut job = loaded(args, is_command)?;
+    args.inputs.drive_job(&mut job)?;
+    Ok(job)
+}
+
+/// Reads the model of a run and its commands, with the loads that are asked for.
+fn loaded(args: &Args, is_command: bool) -> Result<Job, Failure> {
     let asked = match args.loads.is_empty() {
         true => Asked::Kept,
         false => Asked::New(&args.loads),

@@ -484,3 +484,46 @@ fn a_sweep_and_a_linear_system_have_the_inputs_of_the_table() {
     assert_eq!(b(&[]), [0.5, 0.0]);
     assert_eq!(b(&["--input", &table]), [0.5, 3.0]);
 }
+
+#[test]
+fn a_configuration_of_a_recorded_run_has_its_inputs() {
+    let (dataset, table) = files("plant_configuration", "TIME,push\n0,1\n1,3\n");
+    let out = path(std::path::Path::new(&dataset).parent().unwrap()).to_owned();
+    let results = format!("{out}/held.res");
+    let run = [
+        "run",
+        &dataset,
+        "--end",
+        "0.5",
+        "--input",
+        &table,
+        "--input-hold",
+        "--name",
+        "held",
+        "--out",
+        &out,
+    ];
+    ok(&[&run[..], &["--format", "res,json", "--overwrite"]].concat());
+    let record = std::fs::read_to_string(format!("{out}/held.json")).unwrap();
+    let record: serde_json::Value = serde_json::from_str(&record).unwrap();
+    assert_eq!(record["inputs"]["file"], table.as_str());
+    assert_eq!(record["inputs"]["held"], true);
+    let later = format!("{out}/later.adm");
+    ok(&[
+        "configuration",
+        &results,
+        "--at",
+        "0.5",
+        "-o",
+        &later,
+        "--overwrite",
+    ]);
+    let later = Model::read(&later).unwrap();
+    let results = cognate::results::read(results.as_ref()).unwrap();
+    let end = *results.column("PART/2_XFORM.Z").unwrap().last().unwrap();
+    assert!(
+        (later.parts[&2].qg[2] - end).abs() < 1e-9,
+        "{:?} {end}",
+        later.parts[&2].qg
+    );
+}
