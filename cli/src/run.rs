@@ -150,7 +150,6 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     let seconds = &mut session.run.record.seconds;
     seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;
-    session.run.record.inputs = args.inputs.table();
     let doubts: Vec<_> = read.iter().chain(&about_mechanism).cloned().collect();
     note_doubts(&mut session, &doubts);
     let shown = !args.json && !args.quiet;
@@ -418,6 +417,7 @@ fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session 
     }
     session.end_with_commands();
     session.run.record.model = disk::text(&args.model);
+    session.run.record.inputs = args.inputs.table();
     let folder = args.model.parent().map(Path::to_path_buf);
     session.folders = args.out.clone().into_iter().chain(folder).collect();
     let title = Event::Title(session.run.title.clone());
