@@ -181,7 +181,7 @@ impl Spliced<'_> {
         let path = plain(&folder.join(disk::path(name)));
         if self.open.contains(&path) {
             let chain = self.open.iter().chain([&path]);
-            let chain: Vec<String> = chain.map(|file| disk::text(file)).collect();
+            let chain: Vec<String> = chain.map(disk::text).collect();
             return Err(mistake(format!("{name} includes itself")).help(chain.join(" includes ")));
         }
         if self.open.len() > MOST_WITHIN || self.n_files >= MOST_FILES {
