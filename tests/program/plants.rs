@@ -527,3 +527,21 @@ fn a_configuration_of_a_recorded_run_has_its_inputs() {
         later.parts[&2].qg
     );
 }
+
+#[test]
+fn a_table_in_the_unit_of_time_of_the_model_moves_the_same_plant() {
+    let of = |units: &str, damping: &str, table: &str, end: f64| {
+        let text = PLANT.replace("PUSH", "0").replace("GAIN", "0");
+        let text = text.replace("-2*VZ", &format!("-{damping}*VZ"));
+        let units = format!("UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME={units}\n");
+        let mut model = model(&(units + &text));
+        disk::give("units.csv", table);
+        drive_inputs(&mut model, Path::new("units.csv"), Between::Linear).unwrap();
+        end_of(model, "AUTO", 1e-9, end)
+    };
+    let seconds = of("SECOND", "2", "TIME,push\nsec,N\n0,1\n0.5,7\n1,-3\n", 1.5);
+    let table = "TIME,push\nmillisecond,N\n0,1\n500,7\n1000,-3\n";
+    let milliseconds = of("MILLISECOND", "2000", table, 1500.0);
+    let off = (seconds - milliseconds).abs() / seconds.abs();
+    assert!(off < 1e-8, "{seconds} {milliseconds}");
+}
