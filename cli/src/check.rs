@@ -2,7 +2,6 @@
 
 use super::foreseen::Foreseen;
 use super::render::Sources;
-use super::run;
 use super::setup::{self, Asked};
 use super::{Exit, Failure, Outcome, complain, piped, remark, say};
 use cognate::dataset::command::{Command, Script};
@@ -133,7 +132,9 @@ fn check_script(file: &Path, sources: &mut Sources, told: &mut BTreeSet<PathBuf>
         // that is no mistake: the dataset may be given beside the commands, or be in a saved state
         let first = script.steps.first().map(|step| &step.command);
         if !matches!(first, Some(Command::Reload(Some(_)))) {
-            look.stop = look.stop.or_else(|| Some(run::names_no_dataset(file)));
+            look.stop = look
+                .stop
+                .or_else(|| Some(super::missing::names_no_dataset(file)));
         }
         return look;
     };
@@ -199,7 +200,12 @@ pub fn sources(reading: &Reading) -> Sources {
 
 fn add(sources: &mut Sources, reading: &Reading) {
     let source = &reading.dataset.source;
-    sources.add(source.file.clone().unwrap_or_default(), source.text.clone());
+    sources.add(source.file.clone().unwrap_or_default(), source.own_text());
+    for file in source.included() {
+        if let Ok(included) = dataset::open(disk::path(file)) {
+            sources.add(file, included.text);
+        }
+    }
 }
 
 /// Turns mistakes of a file into the failure of a command.

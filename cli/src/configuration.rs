@@ -1,6 +1,7 @@
 //! `cognate configuration`: the configuration of a run at some time as a dataset that begins there.
 
 use super::arguments::{IntegrationArgs, KindName, SpanArgs, UnsolvedArgs};
+use super::inputs::InputArgs;
 use super::moved::is_dataset;
 use super::recorded::{model_file, record_of};
 use super::run::{self, Single};
@@ -52,6 +53,8 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
     #[command(flatten)]
+    inputs: InputArgs,
+    #[command(flatten)]
     integration: IntegrationArgs,
     /// Kind of simulation, for a dataset without command file [default: that of MODEL.toml, else
     /// transient]
@@ -88,7 +91,7 @@ pub fn run(args: &Args) -> Outcome {
     if run::has_commands(&file) {
         span.refuse_beside(&file)?;
     }
-    let job = match run::has_commands(&file) {
+    let mut job = match run::has_commands(&file) {
         true => run::script_with(&file, dataset, asked)?,
         false => run::alone_with(
             &Single {
@@ -104,6 +107,8 @@ pub fn run(args: &Args) -> Outcome {
             asked,
         )?,
     };
+    let inputs = args.inputs.or_recorded(recorded.as_ref(), &args.file);
+    inputs.drive_told(&mut job.reading.model, false)?;
     disk::note_input(&args.file);
     (args.writing).check([&args.out].into_iter().chain(&args.commands))?;
     let options = args.integration.given_to(Options {

@@ -173,6 +173,9 @@ pub fn shown(model: &Model, dataset: &Dataset, id: ElementId) -> Result<String, 
     text += &format!("{id}{}", name.unwrap_or_default());
     if place.line > 0 {
         text += &format!(", line {}", place.line);
+        if let Some(file) = dataset.included_file_of(id) {
+            text += &format!(" of {file}");
+        }
     }
     text.push('\n');
     // of what commands of Adams View made, the statement that it becomes
@@ -215,7 +218,16 @@ pub fn renamed(reading: &Reading, id: ElementId, name: &str) -> Result<Reading, 
     }
     let text = reading.dataset.renamed(id, name);
     text.map(|text| again(reading, &text))
-        .ok_or_else(|| reading.model.no_element(id))
+        .ok_or_else(|| not_here(reading, id))
+}
+
+/// Returns the mistake about an element that the text of a dataset does not hold.
+fn not_here(reading: &Reading, id: ElementId) -> Diagnostic {
+    let Some(file) = reading.dataset.included_file_of(id) else {
+        return reading.model.no_element(id);
+    };
+    let what = format!("{id} stands in {file}, which this dataset includes");
+    Diagnostic::error("include", what).help("change it in that file")
 }
 
 /// Returns a dataset without some elements, read again.
@@ -235,7 +247,7 @@ pub fn without(reading: &Reading, ids: &[ElementId]) -> Result<Reading, Diagnost
             return Err(d.help("delete these first, or let them name others"));
         }
         let text = now.dataset.without(id);
-        let text = text.ok_or_else(|| reading.model.no_element(id))?;
+        let text = text.ok_or_else(|| not_here(reading, id))?;
         now = again(&now, &text);
     }
     Ok(now)

@@ -37,13 +37,18 @@ pub struct Args {
 /// # Errors
 /// When it cannot be read, has a statement that was not understood, or cannot be written.
 pub fn run(args: &Args) -> Outcome {
-    let reading = dataset::read(&args.file).map_err(super::check::failure)?;
+    let source = dataset::open(&args.file).map_err(super::check::failure)?;
+    let reading = match dataset::is_view(&source) {
+        true => dataset::read_source(source),
+        // each file is formatted by itself
+        false => dataset::read_alone(source),
+    };
     super::run::refuse_view(&reading, "is formatted")?;
     refuse_mistakes(&reading)?;
     let text = reading.dataset.formatted();
     // as the same file: its name says which arguments it may have
     let file = reading.dataset.source.file.as_deref();
-    let again = dataset::read_source(Source::from_text(file, text.as_str()));
+    let again = dataset::read_alone(Source::from_text(file, text.as_str()));
     if again.model.to_text() != reading.model.to_text() {
         return Err(Failure {
             exit: Exit::Bug,

@@ -34,6 +34,7 @@ mod formula;
 mod functions;
 mod group;
 mod grouped;
+mod inputs;
 #[cfg(feature = "geometry")]
 mod interference;
 mod interrupt;
@@ -42,6 +43,7 @@ mod linear;
 mod loads;
 mod mdi;
 mod memory;
+mod missing;
 mod mistake;
 mod modes;
 mod motion;

@@ -1,6 +1,7 @@
 //! `cognate linear`: small motions of a model about a state, as eigenvalues and as a linear system.
 
 use super::arguments::UnsolvedArgs;
+use super::inputs::InputArgs;
 use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, interrupt, modes, piped, remark, run, say, summary, width};
 use cognate::analysis::linear::Wanted;
@@ -45,6 +46,8 @@ pub struct Args {
     #[arg(short = 'o', long, value_name = "DIR", value_parser = piped::refused(piped::SEVERAL))]
     out: Option<PathBuf>,
     #[command(flatten)]
+    inputs: InputArgs,
+    #[command(flatten)]
     writing: WritingArgs,
     #[command(flatten)]
     unsolved: UnsolvedArgs,
@@ -70,12 +73,13 @@ impl Watch for Quiet {
 pub fn run(args: &Args) -> Outcome {
     interrupt::install();
     let commands = run::has_commands(&args.model);
-    let (reading, base, steps) = if commands {
+    let (mut reading, base, steps) = if commands {
         let job = run::script(&args.model, None)?;
         (job.reading, job.base, job.steps)
     } else {
         (run::read(&args.model)?, run::stem(&args.model), Vec::new())
     };
+    args.inputs.drive_told(&mut reading.model, args.json)?;
     let options = args.unsolved.given_to(Options {
         named_only: true,
         ..Options::default()

@@ -111,7 +111,7 @@ pub(super) fn record_of(results: &Path) -> Option<Value> {
 }
 
 /// Finds a file that a record names: as it stands, else beside the results or one folder above.
-fn beside(results: &Path, named: &Path) -> PathBuf {
+pub(super) fn beside(results: &Path, named: &Path) -> PathBuf {
     let folder = results.parent().unwrap_or(Path::new(""));
     let name = named.file_name().unwrap_or_default();
     let places = [

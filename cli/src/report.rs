@@ -1,6 +1,7 @@
 //! `cognate report`: a model at many requests by all methods, as error against time.
 
 use super::arguments::{SpanArgs, UnsolvedArgs, methods};
+use super::inputs::InputArgs;
 use super::progress::Progress;
 use super::run::{self, Single};
 use super::writing::{WritingArgs, remark_on_kept};
@@ -46,6 +47,8 @@ pub struct Args {
     /// A further channel to compare: any expression (repeatable) [default: none]
     #[arg(long = "column", value_name = "EXPR")]
     columns: Vec<String>,
+    #[command(flatten)]
+    inputs: InputArgs,
     #[command(flatten)]
     span: SpanArgs,
     /// Folder that the report is written to [default: here]
@@ -96,7 +99,7 @@ impl Follow for Terminal {
 pub fn run(args: &Args) -> Outcome {
     interrupt::install();
     let clock = Instant::now();
-    let job = if run::has_commands(&args.model) {
+    let mut job = if run::has_commands(&args.model) {
         args.span.refuse_beside(&args.model)?;
         run::script(&args.model, args.dataset.as_deref())?
     } else {
@@ -107,6 +110,7 @@ pub fn run(args: &Args) -> Outcome {
             span: args.span,
         })?
     };
+    args.inputs.drive_told(&mut job.reading.model, false)?;
     let read = clock.elapsed().as_secs_f64();
     let (model, dataset) = (job.reading.model, job.reading.dataset);
     let name = format!("{}_report", job.base);

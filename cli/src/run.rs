@@ -3,7 +3,9 @@
 use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, whole_from_one};
 use super::attended::Attended;
 use super::doubted;
+use super::inputs::InputArgs;
 use super::limit::Guard;
+use super::missing::{missing, names_no_dataset};
 use super::mistake::Mistake;
 use super::render::Sources;
 use super::setup::{self, Asked, Prepared, Setup};
@@ -57,6 +59,8 @@ pub struct Args {
     /// what depends on it is computed anew [default: those of the file]
     #[arg(long, value_name = "NAME=VALUE", value_parser = variable)]
     set: Vec<(String, f64)>,
+    #[command(flatten)]
+    inputs: InputArgs,
     /// Folder that results are written to, or - for the table alone on standard output, as .csv or
     /// by json:- and so on [default: here]
     #[arg(short = 'o', long, value_name = "DIR", value_parser = piped::run_folder())]
@@ -136,7 +140,7 @@ fn run_holding(args: &Args, held: &mut Option<(Session, Dataset)>) -> Outcome {
     if !args.quiet {
         remark_on_loads(&job);
     }
-    let is_as_read = job.is_as_read();
+    let is_as_read = job.is_as_read() && !args.inputs.is_given();
     let (Reading { model, dataset, .. }, steps) = (job.reading, job.steps);
     check_columns(args, &model, &steps)?;
     let name = args.name.as_ref().unwrap_or(&job.base);
@@ -229,8 +233,15 @@ fn open_pages(written: &[PathBuf]) {
     (written.iter().filter(is_page)).for_each(|file| super::animate::open(file));
 }
 
-/// Reads the model of a run and its commands, with the loads that are asked for.
+/// Reads the model of a run and its commands, with the loads and inputs that are asked for.
 fn job(args: &Args, is_command: bool) -> Result<Job, Failure> {
+    let mut job = loaded(args, is_command)?;
+    args.inputs.drive_job(&mut job)?;
+    Ok(job)
+}
+
+/// Reads the model of a run and its commands, with the loads that are asked for.
+fn loaded(args: &Args, is_command: bool) -> Result<Job, Failure> {
     let asked = match args.loads.is_empty() {
         true => Asked::Kept,
         false => Asked::New(&args.loads),
@@ -405,6 +416,7 @@ fn open(args: &Args, (model, is_as_read): (Model, bool), base: &str) -> Session 
     }
     session.end_with_commands();
     session.run.record.model = disk::text(&args.model);
+    session.run.record.inputs = args.inputs.table();
     let folder = args.model.parent().map(Path::to_path_buf);
     session.folders = args.out.clone().into_iter().chain(folder).collect();
     let title = Event::Title(session.run.title.clone());
@@ -752,34 +764,4 @@ fn script_from(
         remarks: script.diagnostics,
         read_seconds,
     })
-}
-
-/// Returns the mistake of commands that name no dataset, where none is given beside them.
-pub(super) fn names_no_dataset(path: &Path) -> Diagnostic {
-    let what = format!("{} names no dataset", path.display());
-    Diagnostic::error("no_model", what)
-        .help("begin it with FILE/MODEL=name, or give the dataset behind the command file")
-}
-
-/// Creates the failure for a missing dataset of a command file: names the line, and the files that
-/// may be meant.
-fn missing(script: &Script, path: &Path, file: &Path) -> Failure {
-    let name = script.model.as_deref().unwrap_or_default();
-    let mut d = Diagnostic::error(
-        "cannot_open",
-        format!("there is no dataset {}", disk::text(&file)),
-    );
-    d.file = Some(disk::text(&path));
-    if !script.answered {
-        return Failure::in_files(Exit::Input, vec![d]);
-    }
-    (d.line, d.column) = (1, 1);
-    let d = match name.split_once('=') {
-        Some((_, model)) => d.help(format!("FILE/MODEL={} is meant?", model.trim())),
-        None => d,
-    };
-    let d = d.help(
-        "a first line that is no command is taken as the name of the dataset; the command is FILE/MODEL=name",
-    );
-    Failure::in_files(Exit::Input, vec![d])
 }

@@ -1,6 +1,7 @@
 //! `cognate sweep`: one model many times, and a table of what came of it.
 
 use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, threads};
+use super::inputs::InputArgs;
 use super::mistake::Mistake;
 use super::progress::Progress;
 use super::recorded;
@@ -68,6 +69,8 @@ pub struct Args {
     out: Option<PathBuf>,
     #[command(flatten)]
     writing: WritingArgs,
+    #[command(flatten)]
+    inputs: InputArgs,
     #[command(flatten)]
     span: SpanArgs,
     #[command(flatten)]
@@ -188,12 +191,13 @@ fn open(args: &Args) -> Result<(Sweep, Job), Failure> {
             span: args.span,
         })?
     };
+    args.inputs.drive_told(&mut job.reading.model, args.quiet)?;
     let model = job.reading.model.clone();
     if let Err(error) = model.checked() {
         return Err(Failure::in_model(&job.reading.dataset, error));
     }
     let mut sweep = Sweep::new(model, std::mem::take(&mut job.steps));
-    if job.loads.is_none() {
+    if job.loads.is_none() && !args.inputs.is_given() {
         sweep = sweep.with_design_variables(&job.reading);
     }
     let options = args.integration.given_to(Options::default());

@@ -136,7 +136,7 @@ impl Model {
     /// The dataset as text, as written.
     #[getter]
     fn written(&self) -> String {
-        self.dataset.source.text.clone()
+        self.dataset.to_text().to_owned()
     }
 
     /// The commands that have changed it since it was read.

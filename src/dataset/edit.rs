@@ -17,12 +17,12 @@ impl Dataset {
     /// Returns the text without the statement of an element and the comment with its name; `None`
     /// where there is no such statement.
     pub fn without(&self, id: ElementId) -> Option<String> {
-        let mut text = self.source.text.clone();
+        let mut text = self.to_text().to_owned();
         let mut found = false;
-        for item in self.items_of(id).rev() {
+        for item in self.own_items_of(id) {
             let statement = self.syntax.items[item].span();
             let first = self.name_of(item).map_or(statement, |(comment, _)| comment);
-            text.replace_range(self.lines(first.start, statement.end), "");
+            text.replace_range(self.in_file(self.lines(first.start, statement.end)), "");
             found = true;
         }
         found.then_some(text)
@@ -31,20 +31,42 @@ impl Dataset {
     /// Returns the text with another name in the comment above an element's statement; `None` where
     /// there is no such statement.
     pub fn renamed(&self, id: ElementId, name: &str) -> Option<String> {
-        let mut text = self.source.text.clone();
+        let mut text = self.to_text().to_owned();
         let mut found = false;
-        for item in self.items_of(id).rev() {
+        for item in self.own_items_of(id) {
             match self.name_of(item) {
-                Some((_, old)) => text.replace_range(old, name),
+                Some((_, old)) => text.replace_range(self.in_file(old), name),
                 None => {
                     let at = self.syntax.items[item].span().start;
-                    let at = self.lines(at, at).start;
+                    let at = self.in_file(self.lines(at, at)).start;
                     text.insert_str(at, &["! adams_view_name='", name, "'\n"].concat());
                 }
             }
             found = true;
         }
         found.then_some(text)
+    }
+
+    /// Returns the file in which an element stands, where it is one that the dataset includes.
+    pub fn included_file_of(&self, id: ElementId) -> Option<&str> {
+        let item = self.items_of(id).next_back()?;
+        let file = self.source.file_at(self.syntax.items[item].span().start);
+        file.filter(|file| self.source.file.as_deref() != Some(file))
+    }
+
+    /// Returns the indices of the statements of an element in the file itself, the last first.
+    fn own_items_of(&self, id: ElementId) -> impl Iterator<Item = usize> {
+        let is_own = |item: &usize| {
+            let start = self.syntax.items[*item].span().start;
+            self.source.file_at(start) == self.source.file.as_deref()
+        };
+        self.items_of(id).rev().filter(is_own)
+    }
+
+    /// Returns the bytes within their file of bytes of the text.
+    fn in_file(&self, bytes: std::ops::Range<usize>) -> std::ops::Range<usize> {
+        let span = self.source.in_file(Span::new(bytes.start, bytes.end));
+        span.start..span.end
     }
 
     /// Returns the indices of the statements of an element; what commands of Adams View made has

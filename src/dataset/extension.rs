@@ -6,6 +6,7 @@
 //! ! cognate: RIGID arm = PART/2, PART/3                   parts that are one rigid body
 //! ! cognate: RIGID arm                                    the parts whose names begin with `arm.`
 //! ! cognate: JOINT/4 hinge = REVOLUTE, base, arm, AT=0,0,0, AXIS=0,0,1
+//! ! cognate: INCLUDE arm.adm                              the statements of another dataset
 //! ```
 //!
 //! Joints, markers, spring-dampers and curves that lines make are in `extension/made.rs`.
@@ -63,6 +64,12 @@ pub(super) fn read(source: &Source, syntax: &Syntax, model: &mut Model, out: &mu
                 Ok(body) => bodies.push(body),
                 Err(d) => out.push(source.locate(d, rest)),
             },
+            // read before, where it has a line of its own
+            "INCLUDE" if source.begins_line(span.start) => {}
+            "INCLUDE" => {
+                let d = Diagnostic::error("include", "an INCLUDE stands on a line of its own");
+                out.push(source.locate(d, span));
+            }
             _ => match Made::of(word) {
                 Some(what) => made.push((what, rest)),
                 None => {
@@ -117,7 +124,7 @@ fn comments(syntax: &Syntax) -> Vec<Span> {
 }
 
 /// Returns what stands in a comment after our mark.
-fn after_mark(source: &Source, span: Span) -> Option<Span> {
+pub(super) fn after_mark(source: &Source, span: Span) -> Option<Span> {
     let text = source.slice(span);
     let inner = text.trim_start_matches(|c: char| c == '!' || c.is_whitespace());
     let head = inner.get(..MARK.len())?;

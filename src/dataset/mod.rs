@@ -15,6 +15,7 @@ mod edit;
 mod extension;
 mod frequent;
 mod idle;
+mod include;
 pub(crate) mod lens;
 pub(crate) mod manual;
 pub(crate) mod mesh;
@@ -107,7 +108,7 @@ pub struct Reading {
 impl Reading {
     /// Returns whether it was read from a command file of Adams View.
     pub fn is_view(&self) -> bool {
-        view::is_view(self.dataset.source.file.as_deref())
+        is_view(&self.dataset.source)
     }
 
     /// Returns true if there is any error.
@@ -134,6 +135,11 @@ pub fn open(path: impl AsRef<Path>) -> Result<Source, Error> {
     let path = path.as_ref();
     let file = disk::text(&path);
     Ok(Source::from_bytes(Some(&file), &load(path)?))
+}
+
+/// Returns whether a text is a command file of Adams View, by the name of its file.
+pub fn is_view(source: &Source) -> bool {
+    view::is_view(source.file.as_deref())
 }
 
 /// Reads a dataset from a text.
@@ -168,13 +174,26 @@ pub fn read_source(source: Source) -> Reading {
 /// instead of those of the file, by their full names (`.model.DV_1`). Whatever depends on them is
 /// computed anew.
 pub fn read_with(source: Source, variables: &BTreeMap<String, f64>) -> Reading {
-    match view::is_view(source.file.as_deref()) {
+    match is_view(&source) {
         true => view::read(source, variables),
         false => read_dataset(source),
     }
 }
 
 fn read_dataset(source: Source) -> Reading {
+    let mut mistakes = Vec::new();
+    let (source, is_whole) = include::expanded(source, &mut mistakes);
+    let mut reading = read_alone(source);
+    if !is_whole {
+        // what is not there may be in a file that was not included
+        reading.diagnostics.retain(|d| !d.is(Cause::UnknownElement));
+    }
+    reading.diagnostics.splice(0..0, mistakes);
+    reading
+}
+
+/// Reads a dataset without the files that it includes: to write it again as it stands.
+pub fn read_alone(source: Source) -> Reading {
     let mut reading = Reading::default();
     let out = &mut reading.diagnostics;
     let syntax = syntax::dataset(&source, out);
@@ -232,11 +251,7 @@ fn read_dataset(source: Source) -> Reading {
         }
         match record.filter(|r| r.id.is_none() && d.line == 0) {
             Some(record) => out.push(source.locate(d, record.head)),
-            None => out.push(Diagnostic {
-                file: source.file.clone(),
-                span: source.word_at(d.line, d.column),
-                ..d
-            }),
+            None => out.push(source.located_in_file_of(record.map_or(0, |r| r.head.start), d)),
         }
     }
     let mut without_effect = Idle::default();
@@ -244,7 +259,11 @@ fn read_dataset(source: Source) -> Reading {
     out.extend(without_effect.told(&source));
     name_elements(&records, out);
     // what is missing as a whole follows from mistakes that have a place
-    out.arrange_by_key(|d| (d.line == 0, d.line, d.column));
+    let own = source.file.clone();
+    out.arrange_by_key(|d| {
+        let other = d.file.clone().filter(|_| d.file != own);
+        (d.line == 0, other, d.line, d.column)
+    });
     reading.dataset = Dataset {
         source,
         syntax,

@@ -75,10 +75,13 @@ pub(super) fn given_again(source: &Source, records: &[Option<Record>]) -> Vec<Di
             if is_same || argument.repeated {
                 continue;
             }
+            let file = source.file_at(of.head.start);
+            let other = file.filter(|_| file != source.file_at(given.span.start));
             let message = format!(
-                "{} stands here, and the statement in line {} no longer counts for it",
+                "{} stands here, and the statement in line {}{} no longer counts for it",
                 source.slice(given.span),
-                of.place.line
+                of.place.line,
+                other.map_or_else(String::new, |file| format!(" of {file}"))
             );
             let d = Diagnostic::warning("given_twice", message).element(record.element());
             found.push(source.locate(d, given.span));

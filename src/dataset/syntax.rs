@@ -20,6 +20,23 @@ pub struct Source {
     /// how it stood in the file, and is to be written again
     pub encoding: Encoding,
     line_starts: Vec<usize>,
+    /// the pieces of several files that the text consists of; none: it is that of one
+    pieces: Vec<Piece>,
+    /// the text of the file itself, where it includes others
+    own: Option<String>,
+}
+
+/// Whole lines of one file within a text of several.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    /// first byte within the text
+    pub start: usize,
+    /// the same byte within its file
+    pub at: usize,
+    /// 1-based line of its file
+    pub line: usize,
+    /// its file
+    pub file: Option<String>,
 }
 
 /// Part of the bytes that are control characters from which on they are no text: of random bytes a
@@ -58,6 +75,60 @@ impl Source {
             text,
             encoding: Encoding::Utf8,
             line_starts,
+            pieces: Vec::new(),
+            own: None,
+        }
+    }
+
+    /// Returns a text of several files, in the place of this one, which includes the others.
+    pub(super) fn within(self, text: String, pieces: Vec<Piece>) -> Self {
+        Self {
+            pieces,
+            own: Some(self.text),
+            encoding: self.encoding,
+            ..Self::from_text(self.file.as_deref(), text)
+        }
+    }
+
+    /// Returns the text of the file itself, without those that it includes.
+    pub fn own_text(&self) -> &str {
+        self.own.as_deref().unwrap_or(&self.text)
+    }
+
+    /// Returns the files that it includes.
+    pub fn included(&self) -> impl Iterator<Item = &str> {
+        let files = self.pieces.iter().map(|piece| &piece.file);
+        let others = files.filter(|file| **file != self.file);
+        others.filter_map(|file| file.as_deref())
+    }
+
+    /// Returns the lines, with their ends.
+    pub(super) fn lines(&self) -> impl Iterator<Item = Span> {
+        let ends = self.line_starts.iter().copied().skip(1);
+        let lines = self.line_starts.iter().zip(ends.chain([self.text.len()]));
+        lines.map(|(&start, end)| Span::new(start, end))
+    }
+
+    /// Returns the piece that a byte belongs to; `None`: the text is that of one file.
+    fn piece(&self, offset: usize) -> Option<&Piece> {
+        let after = self.pieces.partition_point(|piece| piece.start <= offset);
+        self.pieces.get(after.saturating_sub(1))
+    }
+
+    /// Returns the file of a byte.
+    pub(super) fn file_at(&self, offset: usize) -> Option<&str> {
+        let piece = self.piece(offset);
+        piece.map_or(self.file.as_deref(), |piece| piece.file.as_deref())
+    }
+
+    /// Returns the bytes within its file of a span; a span ends in the piece in which it begins.
+    pub(super) fn in_file(&self, span: Span) -> Span {
+        match self.piece(span.start) {
+            None => span,
+            Some(piece) => {
+                let start = span.start - piece.start + piece.at;
+                Span::new(start, start + (span.end - span.start))
+            }
         }
     }
 
@@ -82,16 +153,49 @@ impl Source {
         ending.is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("rmd"))
     }
 
-    /// 1-based line and column (in characters) of a byte.
+    /// 1-based line and column (in characters) of a byte, within its file.
     pub fn place(&self, offset: usize) -> (usize, usize) {
-        let line = self.line_starts.partition_point(|&s| s <= offset).max(1);
+        let line = self.line_of(offset);
         let start = self.line_starts.get(line - 1).copied().unwrap_or(0);
         let before = self.text.get(start..offset.min(self.text.len()));
-        (line, before.map_or(0, |s| s.chars().count()) + 1)
+        let column = before.map_or(0, |s| s.chars().count()) + 1;
+        match self.piece(offset) {
+            None => (line, column),
+            Some(piece) => (line - self.line_of(piece.start) + piece.line, column),
+        }
     }
 
-    /// The word at a 1-based line and column.
-    pub fn word_at(&self, line: usize, column: usize) -> Option<Span> {
+    /// Returns whether nothing but a comment stands before a byte in its line.
+    pub(super) fn begins_line(&self, offset: usize) -> bool {
+        let start = self.line_starts[self.line_of(offset) - 1];
+        let before = self.text.get(start..offset).unwrap_or_default();
+        before.trim_start().starts_with('!')
+    }
+
+    /// 1-based line of a byte within the text.
+    fn line_of(&self, offset: usize) -> usize {
+        self.line_starts.partition_point(|&s| s <= offset).max(1)
+    }
+
+    /// Returns what is said about a line and column of the file of a byte, with that file and the
+    /// word there.
+    pub(super) fn located_in_file_of(&self, offset: usize, d: Diagnostic) -> Diagnostic {
+        let file = self.file_at(offset).map(str::to_owned);
+        let alike = |piece: &&Piece| piece.file == file && piece.line <= d.line;
+        let piece = self.pieces.iter().rfind(alike);
+        let shift = piece.map_or(0, |piece| {
+            self.line_of(piece.start) as isize - piece.line as isize
+        });
+        let word = (d.line.checked_add_signed(shift)).and_then(|line| self.word_at(line, d.column));
+        Diagnostic {
+            span: word.map(|word| self.in_file(word)),
+            file,
+            ..d
+        }
+    }
+
+    /// The word at a 1-based line and column of the text.
+    pub(super) fn word_at(&self, line: usize, column: usize) -> Option<Span> {
         let start = *self.line_starts.get(line.checked_sub(1)?)?;
         let rest = self.text.get(start..)?;
         let offset = rest.char_indices().nth(column.checked_sub(1)?)?.0;
@@ -110,8 +214,8 @@ impl Source {
     pub fn locate(&self, diagnostic: Diagnostic, span: Span) -> Diagnostic {
         let (line, column) = self.place(span.start);
         Diagnostic {
-            file: self.file.clone(),
-            span: Some(span),
+            file: self.file_at(span.start).map(str::to_owned),
+            span: Some(self.in_file(span)),
             line,
             column,
             ..diagnostic

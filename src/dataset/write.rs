@@ -18,9 +18,9 @@ use std::collections::BTreeMap;
 const WIDTH: usize = 80;
 
 impl Dataset {
-    /// The text as it was read, to the byte.
+    /// The text as it was read, to the byte, without that of files that it includes.
     pub fn to_text(&self) -> &str {
-        &self.source.text
+        self.source.own_text()
     }
 
     /// The text in the style of Adams View; comments, order and title stay.

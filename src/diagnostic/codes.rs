@@ -3,10 +3,12 @@
 //! A code never changes its meaning. Rows stand in the order in which a text is read; then those
 //! about files and commands.
 
+mod files;
 mod model;
 mod run;
 mod view;
 
+pub use files::FILE_CODES;
 pub use model::MODEL_CODES;
 pub use run::RUN_CODES;
 pub use view::VIEW_CODES;
@@ -32,6 +34,7 @@ pub fn code(name: &str) -> Option<&'static Code> {
 pub fn all() -> impl Iterator<Item = &'static Code> {
     CODES
         .iter()
+        .chain(FILE_CODES)
         .chain(MODEL_CODES)
         .chain(RUN_CODES)
         .chain(VIEW_CODES)

@@ -650,7 +650,7 @@ mod tests {
             ("AX()", "AX takes 1 to 2 arguments, not none"),
             ("3+MAX(1,2", "the text ends inside MAX"),
             ("", "there is no expression"),
-            ("INTERP(TIME,2,1)", "method of INTERP is 1 or 3, not 2"),
+            ("INTERP(TIME,2,1)", "method of INTERP is 0, 1 or 3, not 2"),
         ] {
             assert_eq!(said(text, Dialect::Function).message, message, "{text}");
         }

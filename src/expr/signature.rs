@@ -108,7 +108,13 @@ impl fmt::Display for Choice {
             Choice::Range(first, last) => write!(f, "{first} to {last}"),
             Choice::OneOf(list) => {
                 let words: Vec<String> = list.iter().map(u32::to_string).collect();
-                f.write_str(&words.join(" or "))
+                match &words[..] {
+                    [first @ .., before, last] => {
+                        first.iter().try_for_each(|word| write!(f, "{word}, "))?;
+                        write!(f, "{before} or {last}")
+                    }
+                    _ => f.write_str(&words.concat()),
+                }
             }
             Choice::Positive => f.write_str("1 or more"),
         }

@@ -2,10 +2,14 @@
 //!
 //! One form serves all kinds: on each interval a polynomial in `x − xᵢ`, and one more piece to
 //! either side. An inner knot belongs to the interval on its right, the last knot to the last
-//! interval.
+//! interval; of steps to the piece beyond it, where the last value begins.
 
 use crate::diagnostic::counted;
 use crate::scalar::Table;
+
+/// Least distance of a corner from the line between its neighbours, over the range of the values: a
+/// step over smaller ones meets requests that are no tighter.
+const CORNER: f64 = 1e-6;
 
 /// The end conditions of a cubic spline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -99,6 +103,16 @@ impl Piecewise {
         check(x, y, 2)?;
         let pieces = (0..x.len() - 1).map(|i| vec![y[i], (y[i + 1] - y[i]) / (x[i + 1] - x[i])]);
         Ok(Self::assemble(x, y, 1, pieces, Extrapolation::Linear))
+    }
+
+    /// Builds steps: each value holds until the next point, the first one also before it.
+    ///
+    /// # Errors
+    /// As [`Piecewise::linear`].
+    pub fn steps(x: &[f64], y: &[f64]) -> Result<Self, UnfitData> {
+        check(x, y, 2)?;
+        let pieces = y[..y.len() - 1].iter().map(|&y| vec![y]);
+        Ok(Self::assemble(x, y, 0, pieces, Extrapolation::Linear))
     }
 
     /// Fits Akima's local cubics (1970): the slope at a point is a mean of the neighbouring slopes,
@@ -266,6 +280,7 @@ impl Piecewise {
                     piece[1] = slope(at, next) + bend * (x[at] - x[next]);
                     piece[2] = bend;
                 }
+                _ if degree == 0 => piece[0] = y[at],
                 _ => (piece[0], piece[1]) = (y[at], slope(at, next)),
             }
             piece
@@ -297,6 +312,21 @@ impl Piecewise {
         (self.knots[0], self.knots[self.knots.len() - 1])
     }
 
+    /// Returns whether straight pieces meet in corners: their ends lie off the line between their
+    /// neighbours, by more than those of a smooth function drawn finely.
+    fn has_corners(&self) -> bool {
+        let values = || self.knots.iter().map(|&x| self.at(x, 0));
+        let (lo, hi) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), y| {
+            (lo.min(y), hi.max(y))
+        });
+        let mut places = self.knots.windows(3);
+        places.any(|x| {
+            let [before, after] = [false, true].map(|above| self.beside(x[1], above, 1));
+            let (h, k) = (x[1] - x[0], x[2] - x[1]);
+            (after - before).abs() * h * (k / (h + k)) > CORNER * (hi - lo)
+        })
+    }
+
     /// Returns the knots.
     pub fn knots(&self) -> &[f64] {
         &self.knots
@@ -316,9 +346,9 @@ impl Piecewise {
             let right = knots.partition_point(|&k| k <= x);
             return (right, knots[right - 1]);
         }
-        if x == knots[last] {
+        if x == knots[last] && self.degree > 0 {
             (last, knots[last - 1])
-        } else if x > knots[last] {
+        } else if x >= knots[last] {
             (last + 1, knots[last])
         } else {
             (0, knots[0])
@@ -362,6 +392,13 @@ impl Table for Piecewise {
     }
     fn knots(&self) -> &[f64] {
         &self.knots
+    }
+    fn is_sharp(&self) -> bool {
+        match self.degree {
+            0 => true,
+            1 => self.has_corners(),
+            _ => false,
+        }
     }
     fn beside(&self, x: f64, above: bool, order: u32) -> f64 {
         // pieces count from the one below all knots

@@ -107,7 +107,7 @@ pub(crate) fn safe_name(name: &str) -> String {
 }
 
 /// Returns the name that [`safe_name`] has written.
-fn plain_name(cell: String) -> String {
+pub(crate) fn plain_name(cell: String) -> String {
     match cell.trim_start_matches('\'').starts_with(FORMULA) {
         true => cell.strip_prefix('\'').map(str::to_owned).unwrap_or(cell),
         false => cell,
@@ -158,32 +158,13 @@ fn to_text(rows: &[Vec<String>], separator: u8) -> String {
 /// line.
 pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
     let (bytes, is_cut) = whole_lines(bytes);
-    let decimal_comma = has_decimal_commas(bytes);
-    let number = |cell: &str| match decimal_comma {
-        true => number(&cell.replace(',', ".")),
-        false => number(cell),
-    };
-    let mut reader = ::csv::ReaderBuilder::new()
-        .delimiter(if decimal_comma { b';' } else { b',' })
-        .has_headers(false)
-        .flexible(true)
-        .trim(::csv::Trim::All)
-        .from_reader(bytes);
+    let mut cells_of = Rows::new(bytes);
     let mut run = Run {
         units: Units::default(),
         ..Run::default()
     };
     let mut words: Vec<Words> = Vec::new();
-    let mut record = ::csv::ByteRecord::new();
-    while reader
-        .read_byte_record(&mut record)
-        .map_err(|e| malformed(0, e.to_string()))?
-    {
-        let line = record.position().map_or(0, |p| p.line() as usize);
-        let cells: Vec<String> = record
-            .iter()
-            .map(|cell| String::from_utf8_lossy(cell).into_owned())
-            .collect();
+    while let Some((line, cells)) = cells_of.next()? {
         if run.columns.is_empty() {
             run.columns = cells.into_iter().map(named).collect();
             continue;
@@ -198,7 +179,7 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
                 ),
             ));
         }
-        let numbers: Vec<Option<f64>> = cells.iter().map(|cell| number(cell)).collect();
+        let numbers: Vec<Option<f64>> = cells.iter().map(|cell| cells_of.number(cell)).collect();
         if run.rows() == 0 && numbers.iter().all(Option::is_none) {
             for (column, unit) in run.columns.iter_mut().zip(cells) {
                 column.unit = plain_name(unit);
@@ -232,6 +213,52 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
         run.note_cut();
     }
     Ok(run)
+}
+
+/// The rows of a table that is read.
+pub(crate) struct Rows<'a> {
+    reader: ::csv::Reader<&'a [u8]>,
+    record: ::csv::ByteRecord,
+    decimal_comma: bool,
+}
+
+impl<'a> Rows<'a> {
+    /// Begins before the first row.
+    pub fn new(bytes: &'a [u8]) -> Self {
+        let decimal_comma = has_decimal_commas(bytes);
+        Self {
+            reader: ::csv::ReaderBuilder::new()
+                .delimiter(if decimal_comma { b';' } else { b',' })
+                .has_headers(false)
+                .flexible(true)
+                .trim(::csv::Trim::All)
+                .from_reader(bytes),
+            record: ::csv::ByteRecord::new(),
+            decimal_comma,
+        }
+    }
+
+    /// Returns the line and the cells of the next row; `None` behind the last.
+    ///
+    /// # Errors
+    /// The bytes are no table.
+    pub fn next(&mut self) -> Result<Option<(usize, Vec<String>)>, Diagnostic> {
+        let is_there = (self.reader).read_byte_record(&mut self.record);
+        if !is_there.map_err(|e| malformed(0, e.to_string()))? {
+            return Ok(None);
+        }
+        let line = self.record.position().map_or(0, |p| p.line() as usize);
+        let text = |cell| String::from_utf8_lossy(cell).into_owned();
+        Ok(Some((line, self.record.iter().map(text).collect())))
+    }
+
+    /// Reads the number of a cell.
+    pub fn number(&self, cell: &str) -> Option<f64> {
+        match self.decimal_comma {
+            true => number(&cell.replace(',', ".")),
+            false => number(cell),
+        }
+    }
 }
 
 /// Returns a column without values, whose name stands in a cell.

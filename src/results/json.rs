@@ -25,6 +25,7 @@ pub fn record(run: &Run) -> Value {
         "model": r.model,
         "markers": r.markers,
         "loads": r.loads.as_ref().map(loads),
+        "inputs": r.inputs.as_ref().map(|t| json!({ "file": t.file, "held": t.held })),
         "title": run.title,
         "method": r.method,
         "error": r.error,

@@ -38,8 +38,8 @@ pub use log::Event;
 pub use number::{digits, digits_of_six};
 pub(crate) use record::USUAL_SHARE;
 pub use record::{
-    Accuracy, ChannelAccuracy, Counts, Energy, Jump, Loads, Quantity, RankChange, Record,
-    RowChange, Simulation, Status, Warning,
+    Accuracy, ChannelAccuracy, Counts, Energy, InputTable, Jump, Loads, Quantity, RankChange,
+    Record, RowChange, Simulation, Status, Warning,
 };
 pub use run::{Column, Component, Entity, Kind, Requested, Run, Sequence, Switched};
 pub use seconds::Seconds;

@@ -263,6 +263,15 @@ pub struct Loads {
     pub left_out: Vec<String>,
 }
 
+/// The table that gave a run the inputs of its plants.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct InputTable {
+    /// its file, as the user named it
+    pub file: String,
+    /// whether its samples were held, each until the next
+    pub held: bool,
+}
+
 /// The facts about a run, as its JSON record holds them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
@@ -278,6 +287,8 @@ pub struct Record {
     pub markers: String,
     /// the loads that were chosen; `None`: all loads of the model act
     pub loads: Option<Loads>,
+    /// the table of the inputs of plants; `None`: they are those of the model
+    pub inputs: Option<InputTable>,
     /// the method that integrated, and why, when the program chose
     pub method: String,
     /// requested error
@@ -322,6 +333,7 @@ impl Record {
             model,
             markers,
             loads,
+            inputs,
             method,
             error,
             seconds,
@@ -345,6 +357,7 @@ impl Record {
         self.model.clone_from(model);
         self.markers.clone_from(markers);
         self.loads.clone_from(loads);
+        self.inputs.clone_from(inputs);
         self.method.clone_from(method);
         self.error.clone_from(error);
         self.seconds.clone_from(seconds);

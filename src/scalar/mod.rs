@@ -89,6 +89,10 @@ pub trait Table: Debug + Send + Sync {
         let _ = above;
         self.at(x, order)
     }
+    /// Returns whether its value or its slope jumps where pieces meet.
+    fn is_sharp(&self) -> bool {
+        false
+    }
 }
 
 /// A number: `f64`, or a type that carries more than a value and obeys the same rules.

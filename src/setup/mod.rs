@@ -19,12 +19,14 @@
 mod apply;
 mod function;
 mod group;
+mod inputs;
 mod load;
 mod read;
 
 pub use apply::{Asked, Prepared, apply, check_loads, chosen_loads, prepare, target_of};
 pub use function::{Ordinate, Shape, UserFunction};
 pub use group::{Group, Members, USER_DEFINED};
+pub use inputs::{Between, drive_inputs, undriven_inputs};
 pub use load::{Load, loads_of};
 
 use crate::analysis::session::{Chosen, Options};

@@ -13,5 +13,6 @@ mod command_files;
 mod dataset;
 mod dataset_laws;
 mod effects;
+mod includes;
 mod odd;
 mod view;

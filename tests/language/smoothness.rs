@@ -5,9 +5,9 @@ use cognate::expr::functions::Continuity::{self, C0, C1, C2, Jump, Smooth};
 use cognate::expr::interpolation::{Bindings, Spline};
 use cognate::expr::program::{Input, Work};
 use cognate::expr::smoothness::Smoothness;
-use cognate::expr::spline::{Ends, Extrapolation};
+use cognate::expr::spline::{Ends, Extrapolation, Piecewise};
 use cognate::expr::walk::Host;
-use cognate::scalar::{Germ, Jet, Scalar};
+use cognate::scalar::{Germ, Jet, Scalar, Table};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::sync::Arc;
@@ -110,6 +110,11 @@ fn every_function_breaks_where_its_definition_says() {
         &[(0.0, 1), (1.0, 3), (2.0, 3), (3.0, 3), (5.0, 1)],
     );
     assert_breaks("INTERP(TIME,1,1)", C0, &[(1.0, 1), (2.0, 1), (3.0, 1)]);
+    assert_breaks(
+        "INTERP(TIME,0,1)",
+        Jump,
+        &[(1.0, 0), (2.0, 0), (3.0, 0), (5.0, 0)],
+    );
     assert_eq!(of("AKISPL(TIME,0,1,0)").breakpoints[1].order, 2);
     assert_breaks("ATAN2(TIME,-1)", Jump, &[(0.0, 0)]);
     assert_breaks("ATAN2(TIME,1)", Smooth, &[]);
@@ -258,6 +263,7 @@ fn gentle() -> impl Strategy<Value = String> {
                 "CUBSPL(#,0,1,0)",
                 "AKISPL(#,0,1,0)",
                 "INTERP(#,1,1)",
+                "INTERP(#,0,1)",
                 "POLY(#,0.5,1,-0.5,0.25)",
                 "CHEBY(SIN(#),0,1,2,0.4)",
                 "FORCOS(#,0,1,1,0.5,0.25)",
@@ -381,4 +387,41 @@ impl Host for At {
     fn bindings(&self) -> Option<&Bindings> {
         Some(&self.1)
     }
+}
+
+#[test]
+fn steps_hold_each_value_until_the_next_point_and_lines_have_corners_where_they_bend() {
+    let (x, y) = ([-1.0, 0.5, 2.0], [3.0, -4.0, 7.0]);
+    let steps = Piecewise::steps(&x, &y).unwrap();
+    for (at, value) in [
+        (-9.0, 3.0),
+        (-1.0, 3.0),
+        (0.5f64.next_down(), 3.0),
+        (0.5, -4.0),
+        (2.0f64.next_down(), -4.0),
+        (2.0, 7.0),
+        (1e9, 7.0),
+    ] {
+        assert_eq!((steps.at(at, 0), steps.at(at, 1)), (value, 0.0), "{at}");
+    }
+    assert_eq!(
+        (steps.beside(2.0, false, 0), steps.beside(2.0, true, 0)),
+        (-4.0, 7.0)
+    );
+    assert!(steps.at(f64::NAN, 0).is_nan());
+    assert!(Piecewise::steps(&x[..1], &y[..1]).is_err());
+
+    // noise has corners, a sine that is drawn finely has none that a step must heed
+    let lines = |n: i32, f: &dyn Fn(i32) -> f64| {
+        let x: Vec<f64> = (0..n).map(|k| f64::from(k) / f64::from(n)).collect();
+        Piecewise::linear(&x, &(0..n).map(f).collect::<Vec<f64>>()).unwrap()
+    };
+    let sine = |n: i32| lines(n, &|k| (6.0 * f64::from(k) / f64::from(n)).sin());
+    assert!(
+        steps.is_sharp() && sine(100).is_sharp() && lines(900, &|k| f64::from(k % 7)).is_sharp()
+    );
+    assert!(!sine(20_000).is_sharp() && !lines(900, &|k| 3.0 * f64::from(k)).is_sharp());
+    assert!(!lines(900, &|_| 1.0).is_sharp());
+    let smooth = Piecewise::akima(&x, &y, Extrapolation::Linear).unwrap();
+    assert!(!smooth.is_sharp());
 }

@@ -1,6 +1,6 @@
 //! `cognate elements`: the elements of a dataset by their names, and changes of its text that leave the rest as it stands.
 
-use super::command::{cognate, path, scratch};
+use super::command::{cognate, ok, path, scratch};
 
 const BELT: &str = "\
 a belt
@@ -154,4 +154,59 @@ END
 └ base  PART/1, ground, JOINT/4 'hinge'
 ";
     assert_eq!(tree.out, expected);
+}
+
+#[test]
+fn a_file_that_includes_others_is_formatted_and_changed_alone() {
+    let text = "all\nPART/1, GROUND\nMARKER/1, PART=1\n! cognate: INCLUDE included_bar.adm\nJOINT/1, REVOLUTE, I=2, J=1\nEND\n";
+    let bar = "bar\nPART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nEND\n";
+    let file = scratch("including", "all.adm", text);
+    let included = scratch("including", "included_bar.adm", bar);
+    let out = scratch("including", "out.adm", "");
+    let formatted = ok(&["fmt", path(&file)]).out;
+    assert!(
+        formatted.contains("\n! cognate: INCLUDE included_bar.adm\n"),
+        "{formatted}"
+    );
+    assert!(!formatted.contains("PART/2"), "{formatted}");
+
+    ok(&[
+        "elements",
+        path(&file),
+        "--rename",
+        "JOINT/1=hinge",
+        "-o",
+        path(&out),
+        "--overwrite",
+    ]);
+    let renamed = text.replace("JOINT/1", "! adams_view_name='hinge'\nJOINT/1");
+    assert_eq!(std::fs::read_to_string(&out).unwrap(), renamed);
+    for change in [["--rename", "PART/2=bar"], ["--delete", "PART/2"]] {
+        let command = [
+            "elements",
+            path(&file),
+            change[0],
+            change[1],
+            "-o",
+            path(&out),
+            "--overwrite",
+        ];
+        let done = cognate(&command);
+        assert!(done.code != 0, "{change:?}");
+        let told = ["named by", "which this dataset includes"];
+        assert!(told.iter().any(|t| done.err.contains(t)), "{}", done.err);
+    }
+    assert_eq!(std::fs::read_to_string(&out).unwrap(), renamed);
+    let shown = ok(&["elements", path(&file), "--show", "PART/2"]).out;
+    assert!(
+        shown.starts_with(&format!("PART/2, line 2 of {}", path(&included))),
+        "{shown}"
+    );
+
+    // a mistake in the included file is shown there
+    std::fs::write(&included, bar.replace("MASS=1", "MASS=x")).unwrap();
+    let done = cognate(&["check", path(&file)]);
+    let told = done.out + &done.err;
+    assert!(told.contains("included_bar.adm:2:14"), "{told}");
+    assert!(told.contains("| PART/2, MASS=x"), "{told}");
 }

@@ -8,6 +8,8 @@ mod needs;
 mod repository;
 #[path = "../common/results.rs"]
 mod result_laws;
+#[path = "../common/running.rs"]
+mod running;
 
 mod animation;
 mod broken;
@@ -31,6 +33,7 @@ mod motion;
 mod names;
 mod pages;
 mod piped;
+mod plants;
 mod plots;
 mod prompt;
 mod readers;

@@ -165,7 +165,7 @@ impl Loaded {
     /// When the file cannot be written, or is the one that was read.
     pub fn save(&self, file: &Path) -> Result<(), Diagnostic> {
         let source = &self.reading.dataset.source;
-        WritingArgs::default().bytes(file, &source.encode(&source.text))
+        WritingArgs::default().bytes(file, &source.encode(source.own_text()))
     }
 
     /// Counts the freedoms, and says what is fixed twice and what is free.

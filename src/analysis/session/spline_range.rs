@@ -56,7 +56,7 @@ pub(super) fn spline_calls(model: &Model) -> Vec<SplineCall> {
         for node in &ast.nodes {
             let Node::Call {
                 callee:
-                    Callee::Interpolation(
+                    callee @ Callee::Interpolation(
                         Interpolation::Akispl | Interpolation::Cubspl | Interpolation::Interp,
                     ),
                 args,
@@ -64,7 +64,12 @@ pub(super) fn spline_calls(model: &Model) -> Vec<SplineCall> {
             else {
                 continue;
             };
-            let [x, _, id, ..] = args[..] else { continue };
+            let [x, method, id, ..] = args[..] else {
+                continue;
+            };
+            if holds(ast.node(method), *callee) {
+                continue;
+            }
             let Node::Number { literal, .. } = *ast.node(id) else {
                 continue;
             };
@@ -83,6 +88,12 @@ pub(super) fn spline_calls(model: &Model) -> Vec<SplineCall> {
         }
     }
     all
+}
+
+/// Returns whether a call holds the ends of its data beyond them: INTERP by method 0.
+fn holds(method: &Node, callee: Callee) -> bool {
+    let is_zero = matches!(method, Node::Number { literal, .. } if *literal == 0.0);
+    is_zero && callee == Callee::Interpolation(Interpolation::Interp)
 }
 
 /// The arguments of splines over the rows of a simulation.

@@ -432,6 +432,32 @@ it is mistaken, and what may stand there. Nothing is run before it is mended.
 `cognate loads` and `cognate group` write it, and say nothing that it would not understand.",
     },
     Code {
+        name: "input_table",
+        summary: "a table of inputs that does not fit the plants of the model",
+        explanation: "\
+`--input plant.csv` gives inputs of plants (PINPUT) over time. Its first row has the names, a second one may have units, all others
+are samples: TIME, which increases, and a number for each input. The message says at which line it is mistaken.
+
+    TIME,torque,IN2           a VARIABLE of a PINPUT by its name, and the second one of the PINPUTs
+    0,0,12.5
+    0.01,0.4,12.5
+
+A column that is no input is refused, not skipped: with its name misspelt the run would be another. Two inputs cannot share a
+column, nor two columns an input. Times that do not increase are mistakes, also where a value jumps: two samples close together, or
+`--input-hold`, say that.",
+    },
+    Code {
+        name: "plant_inputs",
+        summary: "a note that says where the inputs of plants come from",
+        explanation: "\
+A plant is a mechanism whose inputs (PINPUT) another program gives while it runs. Its VARIABLEs have FUNCTION=0, or USER, until then:
+alone it runs with these. `--input` gives them from a table.
+
+    cognate run plant.adm --end 5                                     the inputs stay as their functions say
+    cognate run plant.adm --end 5 --input plant.csv                   straight lines between samples
+    cognate run plant.adm --end 5 --input plant.csv --input-hold      each sample until the next, as a controller holds it",
+    },
+    Code {
         name: "unknown_load",
         summary: "a name that is neither a load case nor a load of the model",
         explanation: "\

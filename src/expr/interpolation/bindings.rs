@@ -90,10 +90,10 @@ impl Bindings {
                         "INTERP needs a spline with a single curve",
                     ));
                 }
-                let surface = if whole(1) == 1 {
-                    spline.linear()
-                } else {
-                    spline.cubic()
+                let surface = match whole(1) {
+                    0 => spline.steps(),
+                    1 => spline.linear(),
+                    _ => spline.cubic(),
                 };
                 Ok(Bound::Table(surface.curves[0].clone(), order(spline, 3)?))
             }

@@ -33,6 +33,8 @@ pub struct Spline {
     cubic: OnceLock<Arc<Surface>>,
     /// straight lines, once they have been fitted
     linear: OnceLock<Arc<Surface>>,
+    /// steps, once they have been built
+    steps: OnceLock<Arc<Surface>>,
 }
 
 impl Spline {
@@ -64,7 +66,7 @@ impl Spline {
             check(&x, curve, 4)?;
             Piecewise::cubic(&x, curve, ends, extrapolation)?;
         }
-        let (akima, cubic, linear) = Default::default();
+        let (akima, cubic, linear, steps) = Default::default();
         Ok(Self {
             x,
             z,
@@ -74,6 +76,7 @@ impl Spline {
             akima,
             cubic,
             linear,
+            steps,
         })
     }
 
@@ -96,6 +99,11 @@ impl Spline {
     pub fn linear(&self) -> &Arc<Surface> {
         self.linear
             .get_or_init(|| self.fit(|y| Piecewise::linear(&self.x, y)))
+    }
+    /// Returns steps from point to point, built at the first call.
+    pub fn steps(&self) -> &Arc<Surface> {
+        self.steps
+            .get_or_init(|| self.fit(|y| Piecewise::steps(&self.x, y)))
     }
 
     /// Fits each curve of the family.

@@ -111,8 +111,10 @@ interpolations! {
 
     /// Time series: linear (method 1) or cubic (method 3) interpolation of spline `id`, or its
     /// derivative of order `iord`.
-    Interp "INTERP" (x: Number => "place at which the curve is read", method: one_of(&[1, 3]) => "1 straight lines, 3 cubics", id: SPLINE_ID => "data"; iord: DERIVATIVE => "order of the derivative over x") C0
-    "straight lines, or the curve of CUBSPL"
+    ///
+    /// Method 0, which other programs do not have, holds each value until the next point.
+    Interp "INTERP" (x: Number => "place at which the curve is read", method: one_of(&[0, 1, 3]) => "0 steps, 1 straight lines, 3 cubics", id: SPLINE_ID => "data"; iord: DERIVATIVE => "order of the derivative over x") C0
+    "steps, straight lines, or the curve of CUBSPL"
 
     /// Component (1 x, 2 y, 3 z) of curve `id` at parameter `alpha`, or its derivative of order
     /// `iord`.

@@ -107,9 +107,9 @@ impl Builder {
 }
 
 impl Levels {
-    /// Returns whether they are the knots of a table of more than a few points: measured data,
-    /// which no step need heed one by one.
+    /// Returns whether they are the knots of a smooth table of more than a few points: measured
+    /// data, which no step need heed one by one.
     fn are_many(&self) -> bool {
-        matches!(self, Levels::Knots(table) if table.knots().len() > FEW)
+        matches!(self, Levels::Knots(table) if table.knots().len() > FEW && !table.is_sharp())
     }
 }

@@ -121,9 +121,13 @@ impl Reading {
     }
 
     fn entity(&mut self, e: &BytesStart<'_>) -> Result<(), String> {
-        let name = attribute(e, "name")?.ok_or("an Entity without a name")?;
+        let own = attribute(e, "name")?.ok_or("an Entity without a name")?;
+        let entity = attribute(e, "entity")?.unwrap_or_else(|| own.clone());
+        // of an element within an assembly the file has its own name apart
+        let within = entity.strip_suffix(&own).is_some_and(|s| s.ends_with('.'));
+        let name = if within { entity.clone() } else { own };
         self.run.entities.push(Entity {
-            entity: attribute(e, "entity")?.unwrap_or_else(|| name.clone()),
+            entity,
             kind: attribute(e, "entType")?.unwrap_or_default(),
             id: whole(attribute(e, "objectId")?).unwrap_or(0),
             name,

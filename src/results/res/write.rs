@@ -3,7 +3,7 @@
 use super::EXPRESSIONS;
 use crate::results::format::TableText;
 use crate::results::number::push_digits;
-use crate::results::{Run, Status};
+use crate::results::{Entity, Run, Status};
 use std::fmt::Write;
 use std::ops::Range;
 
@@ -110,6 +110,15 @@ fn owners(run: &Run) -> Vec<Option<usize>> {
     owners
 }
 
+/// Returns the name of a set in the file: of an element within an assembly its own, as Adams
+/// writes it, for `entity` has that of the assembly.
+fn own_name(e: &Entity) -> &str {
+    match e.entity.rsplit_once('.') {
+        Some((_, own)) if e.name == e.entity && !own.is_empty() => own,
+        _ => &e.name,
+    }
+}
+
 fn head(run: &Run, text: &mut String) {
     let (name, title, version) = (
         escape(&run.name),
@@ -157,7 +166,8 @@ fn step_map(run: &Run, owners: &[Option<usize>], text: &mut String) {
     component(text, "TIME", 0, false);
     text.push_str("</Entity>\n");
     for e in &run.entities {
-        let (name, entity, kind, id) = (escape(&e.name), escape(&e.entity), escape(&e.kind), e.id);
+        let (name, entity) = (escape(own_name(e)), escape(&e.entity));
+        let (kind, id) = (escape(&e.kind), e.id);
         add(
             text,
             format_args!(
