@@ -835,7 +835,7 @@ class Words:
         SCALES : Numbers, optional
             r1, r2 and r3; with one number fewer than joints r1 is 1. Default: 1 for the first.
         FUNCTION : str | float, optional
-            USER(…): the sum is computed by a routine.
+            USER(…): what is zero instead of the sum is computed by a routine, COUSUB.
         ROUTINE : str, optional
             Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
             --routines` loads libraries that have it; programs register closures.
@@ -1636,6 +1636,8 @@ class Words:
         JFLIP: bool = False,
         FUNCTION: str | float | None = None,
         ROUTINE: str | None = None,
+        FRICTION_FUNCTION: str | float | None = None,
+        FRICTION_ROUTINE: str | None = None,
     ) -> Element:
         """Add a CONTACT.
 
@@ -1682,10 +1684,14 @@ class Words:
         JFLIP : bool, optional
             The outside of the J curves is their inside; not for solids.
         FUNCTION : str | float, optional
-            USER(…): the normal force by a routine.
+            USER(…): the normal force by a routine, CNFSUB.
         ROUTINE : str, optional
             Library and entry, library::entry, of the routine behind FUNCTION=USER(…). `run
             --routines` loads libraries that have it; programs register closures.
+        FRICTION_FUNCTION : str | float, optional
+            USER(…): the friction force by a routine, CFFSUB.
+        FRICTION_ROUTINE : str, optional
+            Library and entry of that routine, as library::entry.
 
         Returns
         -------
@@ -1714,6 +1720,8 @@ class Words:
             JFLIP=JFLIP,
             FUNCTION=FUNCTION,
             ROUTINE=ROUTINE,
+            FRICTION_FUNCTION=FRICTION_FUNCTION,
+            FRICTION_ROUTINE=FRICTION_ROUTINE,
         )
         return made
 
