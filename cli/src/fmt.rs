@@ -45,6 +45,9 @@ pub fn run(args: &Args) -> Outcome {
     };
     super::run::refuse_view(&reading, "is formatted")?;
     refuse_mistakes(&reading)?;
+    for included in reading.dataset.source.includes() {
+        disk::note_input(&included);
+    }
     let text = reading.dataset.formatted();
     // as the same file: its name says which arguments it may have
     let file = reading.dataset.source.file.as_deref();

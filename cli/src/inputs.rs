@@ -3,9 +3,10 @@
 use super::recorded::beside;
 use super::run::Job;
 use super::{Exit, Failure, remark};
+use cognate::dataset::command::Command;
 use cognate::diagnostic::Diagnostic;
 use cognate::disk;
-use cognate::model::Model;
+use cognate::model::{ElementKind, Model};
 use cognate::results::InputTable;
 use cognate::setup::{Between, drive_inputs, undriven_inputs};
 use serde_json::Value;
@@ -79,7 +80,26 @@ impl InputArgs {
     /// # Errors
     /// As [`InputArgs::drive`].
     pub fn drive_job(&self, job: &mut Job) -> Result<(), Failure> {
+        let before = job.reading.model.variables.clone();
         let note = self.drive(&mut job.reading.model)?;
+        let is_driven = |id: &u32| {
+            let now = job.reading.model.variables.get(id).map(|v| &v.function);
+            now != before.get(id).map(|v| &v.function)
+        };
+        let changed = job.steps.iter().filter_map(|step| match &step.command {
+            Command::Change(record) if record.row.kind() == Some(ElementKind::Variable) => {
+                record.id.filter(is_driven)
+            }
+            _ => None,
+        });
+        if let Some(id) = changed.into_iter().next() {
+            let id = ElementKind::Variable.id(id);
+            let what = format!("a command changes {id}, which the table of --input drives");
+            let d = Diagnostic::error("input_table", what);
+            return Err(d
+                .help("leave its column out of the table, or the command")
+                .into());
+        }
         let is_true = self.is_given() || !job.changes_the_model();
         job.remarks.extend(note.filter(|_| is_true));
         Ok(())

@@ -71,6 +71,20 @@ pub(super) fn named(source: &Source, line: Span) -> Option<Span> {
     })
 }
 
+impl Source {
+    /// Returns the files that lines of this text include, by their names alone.
+    pub fn includes(&self) -> Vec<PathBuf> {
+        let folder = self
+            .file
+            .as_deref()
+            .and_then(|file| Path::new(file).parent());
+        let names = self.lines().skip(1).filter_map(|line| named(self, line));
+        let names = names.map(|name| self.slice(name).trim_matches(['\'', '"']).trim());
+        let path = |name| plain(&folder.unwrap_or(Path::new("")).join(disk::path(name)));
+        names.map(path).collect()
+    }
+}
+
 /// A line that includes a file.
 struct Include {
     /// the name of the file
@@ -222,6 +236,9 @@ impl Spliced<'_> {
             );
             return Err(included.locate(d, Span::new(first, first)));
         }
+        if let Some((line, what)) = unfinished(&included, first..end) {
+            return Err(included.locate(mistake(what), line));
+        }
         self.open.push(path);
         self.add(&included, first..end);
         self.open.pop();
@@ -234,6 +251,24 @@ const USAGE: &str =
 
 fn mistake(what: impl Into<String>) -> Diagnostic {
     Diagnostic::error("include", what)
+}
+
+/// Returns the last line of a part of a file that waits for something behind it, and for what.
+fn unfinished(source: &Source, body: Range<usize>) -> Option<(Span, &'static str)> {
+    let mut found = None;
+    for line in source.lines().filter(|line| body.contains(&line.start)) {
+        let text = source.slice(line).trim();
+        if text.starts_with('!') {
+            if syntax::view_name(text).is_some() {
+                found = Some((line, "no statement of this file stands below this name"));
+            }
+        } else if text.ends_with('&') {
+            found = Some((line, "the statement goes on beyond the end of this file"));
+        } else if !text.is_empty() {
+            found = None;
+        }
+    }
+    found
 }
 
 /// Returns whether the first line of a text that is no comment continues a statement.

@@ -163,6 +163,13 @@ fn what_cannot_be_included_is_told_at_its_line_and_the_rest_is_read() {
     let onward = ("four/onward.adm", "c\n! a comment\n, MASS=1\nEND\n");
     let (file, line, _) = first("onward.adm", &[onward]);
     assert_eq!((file.as_str(), line), ("four/onward.adm", 2));
+    for (text, place) in [
+        ("d\nMARKER/3, PART=1\n! adams_view_name='x'\nEND\n", 3),
+        ("d\nMARKER/3, PART=1 &\n", 2),
+    ] {
+        let (file, line, _) = first("ended.adm", &[("four/ended.adm", text)]);
+        assert_eq!((file.as_str(), line), ("four/ended.adm", place));
+    }
     // all at once
     let both = read(&[(
         "four/both.adm",

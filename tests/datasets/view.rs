@@ -453,6 +453,18 @@ const MISTAKES: &[(&str, usize, &str, &str)] = &[
         "view_expression",
         "3 numbers",
     ),
+    (
+        "simulation single_run transient type = auto_select end_time = 2,5 number_of_steps = 20 model_name = .m",
+        3,
+        "view_expression",
+        "end_time = 2,5",
+    ),
+    (
+        "simulation single_run transient end_time = 2 number_of_steps = 2.5",
+        3,
+        "view_expression",
+        "a whole number",
+    ),
     // a lost & before the line of j_marker_name
     (
         "marker create marker_name = .m.ground.i\nconstraint create joint fixed joint_name = .m.j i_marker_name = .m.ground.i",

@@ -48,6 +48,47 @@ fn most(a: &Session, b: &Session, columns: &[&str]) -> f64 {
     most
 }
 
+/// Forces of a coupler are those of its scales, and work that time does through it is known.
+#[test]
+fn forces_and_works_of_a_coupler_by_a_closure_are_those_of_scales_and_of_a_gcon() {
+    let columns = ["COUPLER_1.F1", "COUPLER_1.F2", "ENERGY.KINETIC"];
+    let run = |relation: &str, columns: &[&str], law: Option<fn(&[f64], f64) -> f64>| {
+        let mut session = begin(pendulums(relation), "coupled", options(columns, 1e-9));
+        if let Some(law) = law {
+            session.register("COUPLER/1", &[], move |call: &Call<'_>, out: &mut [f64]| {
+                out[0] = law(call.values, call.time);
+            });
+        }
+        go(&mut session, Analysis::Dynamic, 2.0, 20);
+        session
+    };
+    let scales = run(
+        "COUPLER/1, JOINTS=1,2, TYPE=R:R, SCALES=1,-2",
+        &columns,
+        None,
+    );
+    let by_user = "COUPLER/1, JOINTS=1,2, TYPE=R:R, FUNCTION=USER()";
+    // scales hold the angles that are drawn
+    let found = run(by_user, &columns, Some(|q, _| q[0] - 2.0 * q[1] - 0.3));
+    let most_off = most(&scales, &found, &columns);
+    assert!(most_off < 1e-6, "{most_off:e}");
+    let gcon = run(
+        "GCON/1, FUNCTION=AZ(21,1)-2*AZ(31,13)-TIME**2",
+        &["ENERGY.KINETIC"],
+        None,
+    );
+    let driven = run(
+        by_user,
+        &["ENERGY.KINETIC"],
+        Some(|q, t| q[0] - 2.0 * q[1] - t * t),
+    );
+    let works = [&gcon, &driven].map(|s| s.run.record.energy.by_motions);
+    assert!(
+        works[0].abs() > 0.01 && (works[0] - works[1]).abs() < 1e-6,
+        "{works:?}"
+    );
+}
+
 #[test]
 fn a_coupler_by_a_closure_holds_what_a_gcon_does() {
     let gcon = "GCON/1, FUNCTION=AZ(31,13)+0.5*AZ(21,1)*AZ(31,13)-0.4*SIN(AZ(21,1))";

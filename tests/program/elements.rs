@@ -170,6 +170,14 @@ fn a_file_that_includes_others_is_formatted_and_changed_alone() {
     );
     assert!(!formatted.contains("PART/2"), "{formatted}");
 
+    let over = cognate(&["fmt", path(&file), "-o", path(&included), "--overwrite"]);
+    assert!(
+        over.code != 0 && over.err.contains("is_input"),
+        "{}",
+        over.err
+    );
+    assert_eq!(std::fs::read_to_string(&included).unwrap(), bar);
+
     ok(&[
         "elements",
         path(&file),

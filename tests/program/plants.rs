@@ -438,6 +438,18 @@ fn mistakes_of_a_table_end_a_run_before_anything_is_written() {
         assert!(done.err.contains(part), "{part}: {}", done.err);
     }
     assert!(!std::path::Path::new(&out).join("none").exists());
+    // a command that drives what the table drives
+    let inputs = scratch("plant_refused", "push.csv", "TIME,push\n0,1\n1,2\n");
+    let commands = format!(
+        "file/model={dataset}\nsim/dyn, end=1, steps=1\nvariable/7, function=8\nsim/dyn, end=2, steps=1\n"
+    );
+    let commands = scratch("plant_refused", "again.acf", &commands);
+    let done = cognate(&["run", path(&commands), "--input", path(&inputs)]);
+    assert!(
+        done.code == 3 && done.err.contains("a command changes VARIABLE/7"),
+        "{}",
+        done.err
+    );
     let done = cognate(&["run", &dataset, "--end", "1", "--input-hold"]);
     assert_eq!(done.code, 2, "{}", done.err);
     let done = cognate(&["run", &dataset, "--end", "1", "--input", "nowhere.csv"]);

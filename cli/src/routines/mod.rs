@@ -132,6 +132,9 @@ impl RoutineArgs {
         zero_user: bool,
     ) -> Result<Mistake, Failure> {
         let mistake = Mistake::default();
+        for library in &self.libraries {
+            sweep.depends_on(&disk::read(library).unwrap_or_default());
+        }
         let Reading { model, dataset, .. } = reading;
         for Hook { name, inputs, law } in self.hooks(model, dataset, zero_user, &mistake)? {
             let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();

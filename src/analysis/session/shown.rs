@@ -359,11 +359,19 @@ impl<'a, 's, S: Scalar> Values<'a, 's, S> {
         let id = ElementKind::Coupler.id(coupler);
         let mut rows = self.scene.rows.iter().enumerate();
         let found = rows.find_map(|(r, row)| match &row.kind {
-            RowKind::Displacements(sum) if row.element == id => Some((r, sum.terms.get(term)?.0)),
+            RowKind::Displacements(sum) if row.element == id => {
+                let factor = sum.terms.get(term)?.0;
+                Some((
+                    r,
+                    match &sum.coupled {
+                        Some(coupled) => self.at.coupled_slope(coupled, term),
+                        None => S::constant(factor),
+                    },
+                ))
+            }
             _ => None,
         });
-        let force = |(r, factor): (usize, f64)| self.at.solved().lambda[r].scale(factor);
-        found.map_or_else(S::zero, force)
+        found.map_or_else(S::zero, |(r, factor)| self.at.solved().lambda[r] * factor)
     }
 }
 

@@ -31,7 +31,7 @@ use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::dataset::{self, Reading, Source};
 use crate::diagnostic::{Diagnostic, Error, Severity, counted};
 use crate::model::{ElementKind, Model};
-use crate::results::Status;
+use crate::results::{Status, digest};
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -69,6 +69,8 @@ pub struct Sweep {
     pub folders: Vec<PathBuf>,
     /// closures that compute what `USER(…)` stands for
     hooks: Vec<Hook>,
+    /// what else the results depend on
+    beside: Vec<String>,
     /// the command file of Adams View that the model is of, and its design variables
     view: Option<(Source, Vec<String>)>,
     /// which of the values are those of design variables, by their names
@@ -142,6 +144,7 @@ impl Sweep {
             options: Options::default(),
             folders: Vec::new(),
             hooks: Vec::new(),
+            beside: Vec::new(),
             view: None,
             designs: Vec::new(),
             idle: Idle::default(),
@@ -241,6 +244,12 @@ impl Sweep {
         measure.take_unit(&self.session(column.into_iter().collect()));
         self.measures.push(measure);
         Ok(())
+    }
+
+    /// Takes note of what the results depend on beside the model, as the library that computes a
+    /// closure: a table of other contents is that of another sweep.
+    pub fn depends_on(&mut self, contents: &[u8]) {
+        self.beside.push(digest(contents.iter().copied()));
     }
 
     /// Computes what `USER(…)` stands for by a closure, which the threads share; see

@@ -301,6 +301,7 @@ fn digest_of(sweep: &Sweep) -> String {
     // limits decide whether there is a result, not which
     (options.limit, options.max_steps) = (None, None);
     text += &format!("{options:?}\n{:?}\n", heads(sweep));
+    text += &sweep.beside.join("\n");
     digest(text.into_bytes())
 }
 

@@ -7,10 +7,10 @@ use crate::analysis::trajectory::{Energy, Powers};
 use crate::model::ElementKind;
 use crate::numeric::quadrature::Node;
 use crate::scalar::Scalar;
-use crate::scene::Scene;
 use crate::scene::equations::Equations;
 use crate::scene::layout::LongRow;
 use crate::scene::programs::{self, record_more};
+use crate::scene::{Row, RowKind, Scene};
 
 /// The program of energy and powers, and what it reads.
 #[derive(Clone, Debug)]
@@ -44,7 +44,11 @@ fn does_work(scene: &Scene) -> bool {
 /// Returns whether rows or coordinates may do work.
 fn is_driven(scene: &Scene) -> bool {
     let general = |id: &crate::model::ElementId| id.kind == ElementKind::Gcon;
-    !scene.motions.is_empty() || scene.constraints.iter().any(|c| general(&c.id))
+    let is_coupled =
+        |row: &Row| matches!(&row.kind, RowKind::Displacements(sum) if sum.coupled.is_some());
+    !scene.motions.is_empty()
+        || scene.constraints.iter().any(|c| general(&c.id))
+        || scene.rows.iter().any(is_coupled)
 }
 
 impl EnergyProgram {

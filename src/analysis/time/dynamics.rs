@@ -82,12 +82,12 @@ impl<'a> Course<'a> {
         self.options.is_auto() && self.is_explicit()
     }
 
-    /// Returns what is tried: a method that stiffness has chosen goes on.
+    /// Returns what is tried.
     fn trial(&self) -> Trial {
         let trials = self.trials[usize::from(!self.is_explicit())];
         match self.pace {
             Some(pace) => Trial::Against(pace, trials),
-            None if self.may_change() || self.why == Takeover::Cheaper => Trial::After(trials),
+            None if self.options.is_auto() => Trial::After(trials),
             None => Trial::No,
         }
     }
@@ -145,6 +145,7 @@ impl<'a> Course<'a> {
                 (self.other(), Takeover::Cheaper)
             }
             Finished::Stiff => {
+                self.tried = method.leave().map(|left| (left, method.weights().clone()));
                 self.patience = if method.stats().steps > STEPS_WITHOUT_STIFFNESS {
                     1
                 } else {

@@ -519,20 +519,14 @@ impl<'a> Interpreter<'a> {
     ) {
         let mut arguments = Vec::new();
         for (name, argument) in given {
-            let Some(value) = argument.values.first() else {
-                continue;
-            };
-            let text = match value.form {
-                Form::Group => match self.number(*value) {
-                    Ok(number) => number.to_string(),
-                    Err(d) => {
-                        self.db.say(d);
-                        continue;
-                    }
-                },
-                _ => self.slice(value.span).trim_matches('"').to_owned(),
-            };
-            arguments.push((*name, text));
+            let texts = argument.values.iter().map(|value| match value.form {
+                Form::Group => self.number(*value).map(|number| number.to_string()),
+                _ => Ok(self.slice(value.span).trim_matches('"').to_owned()),
+            });
+            match texts.collect::<Result<Vec<String>, Diagnostic>>() {
+                Ok(texts) => arguments.push((*name, texts.join(","))),
+                Err(d) => self.db.say(d),
+            }
         }
         self.simulations.push(Simulation {
             kind: row.kind.as_str(),

@@ -6,6 +6,7 @@
 use super::commands::{self, Meaning};
 use super::database::Database;
 use super::interpret::Simulation;
+use super::make::DECIMALS;
 use super::syntax;
 use crate::dataset::syntax::Source;
 use crate::diagnostic::{Diagnostic, Severity};
@@ -66,8 +67,9 @@ fn of_script(
             };
             let arguments = command.arguments.iter().filter_map(|a| {
                 let name = commands::argument(row, inner.slice(a.name)).ok()?;
-                let value = a.values.first()?;
-                Some((name, inner.slice(value.span).trim_matches('"').to_owned()))
+                let texts = a.values.iter();
+                let texts = texts.map(|value| inner.slice(value.span).trim_matches('"'));
+                Some((name, texts.collect::<Vec<&str>>().join(",")))
             });
             row.kind
                 .starts_with("simulation single_run")
@@ -100,6 +102,25 @@ fn of_script(
         span: db.objects[k].head,
     };
     one(source, db, &simulation, out, depth)
+}
+
+/// Returns what is wrong with an argument of a simulation that is a number.
+fn mistaken(name: &str, text: &str) -> Option<String> {
+    let is_count = name == "number_of_steps";
+    let is_time = matches!(name, "end_time" | "duration" | "step_size");
+    if !is_count && !is_time {
+        return None;
+    }
+    let number: Option<f64> = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
+    let is_meant = number.is_some_and(|x| match is_count {
+        true => x >= 0.0 && x.fract() == 0.0,
+        false => x > 0.0 || name == "end_time" && x == 0.0,
+    });
+    let meant = match is_count {
+        true => "a whole number",
+        false => "a time",
+    };
+    (!is_meant).then(|| format!("{name} = {text}: {meant} is meant"))
 }
 
 /// Returns the commands of one simulation.
@@ -138,6 +159,11 @@ fn one(
             }
         }
         "transient" => {
+            let wrong = simulation.arguments.iter();
+            for what in wrong.filter_map(|(name, text)| mistaken(name, text)) {
+                let d = Diagnostic::error("view_expression", what);
+                out.push(source.locate(d.help(DECIMALS), simulation.span));
+            }
             if is("initial_static") {
                 lines.push("SIMULATE/STATIC".to_owned());
             }

@@ -219,12 +219,26 @@ impl<S: Scalar> Equations<'_, S> {
         }
     }
 
-    /// A constraint of displacements that a closure computes, by its expansion about where they are
-    /// (1).
-    fn coupled_row(&self, coupled: &Coupled) -> RowValue<S> {
-        let own: Vec<RowValue<S>> = (coupled.displacements.iter())
-            .map(|d| self.displacement(d))
-            .collect();
+    /// The partial derivative of a constraint that a closure computes along one of its
+    /// displacements.
+    pub fn coupled_slope(&self, coupled: &Coupled, k: usize) -> S {
+        let own = self.coupled_displacements(coupled);
+        let (away, partials) = self.expansion(coupled, &own);
+        let (places, mut slope) = (coupled.partials(), S::zero());
+        for (l, away) in away.iter().enumerate() {
+            slope += partials[places.second(k, l)] * *away;
+        }
+        partials[places.first(k)] + slope
+    }
+
+    fn coupled_displacements(&self, coupled: &Coupled) -> Vec<RowValue<S>> {
+        let all = coupled.displacements.iter();
+        all.map(|d| self.displacement(d)).collect()
+    }
+
+    /// Displacements and time from where a closure expands its constraint, and the numbers of the
+    /// expansion.
+    fn expansion(&self, coupled: &Coupled, own: &[RowValue<S>]) -> (Vec<S>, Vec<S>) {
         let mut x: Vec<S> = own.iter().map(|d| d.value).collect();
         x.push(self.now.t);
         let numbers = match x.iter().map(Scalar::known).collect::<Option<Vec<f64>>>() {
@@ -235,9 +249,17 @@ impl<S: Scalar> Equations<'_, S> {
             }
             None => self.external(coupled.places.clone()).to_vec(),
         };
+        let (x0, partials) = numbers.split_at(coupled.n());
+        let away = x.iter().zip(x0).map(|(x, x0)| *x - *x0).collect();
+        (away, partials.to_vec())
+    }
+
+    /// A constraint of displacements that a closure computes, by its expansion about where they are
+    /// (1).
+    fn coupled_row(&self, coupled: &Coupled) -> RowValue<S> {
+        let own = self.coupled_displacements(coupled);
+        let (away, partials) = self.expansion(coupled, &own);
         let (n, places) = (coupled.n(), coupled.partials());
-        let (x0, partials) = numbers.split_at(n);
-        let away: Vec<S> = x.iter().zip(x0).map(|(x, x0)| *x - *x0).collect();
         let rate = |k: usize| own.get(k).map_or(S::one(), |d| self.row_rate(d));
         let rates: Vec<S> = (0..n).map(rate).collect();
         let mut row = RowValue {

@@ -121,6 +121,10 @@ pub(super) struct Maker<'a> {
     massless: Vec<(usize, String)>,
 }
 
+/// The advice where a number has a decimal comma.
+pub(super) const DECIMALS: &str =
+    "decimals are written with a point (1.5); a comma begins another value";
+
 /// A value on its way into a record.
 pub(super) enum Want {
     Flag,
@@ -442,9 +446,7 @@ impl<'a> Maker<'a> {
             let d = Diagnostic::error("view_expression", what);
             let mut d = self.source.locate(d, span);
             d.name = draft.object.map(|k| self.db.inner_name(k));
-            self.db.say(
-                d.help("decimals are written with a point (1.5); a comma begins another value"),
-            );
+            self.db.say(d.help(DECIMALS));
         }
         self.records.push(draft.record);
     }
