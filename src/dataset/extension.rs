@@ -99,7 +99,8 @@ pub(super) fn read(source: &Source, syntax: &Syntax, model: &mut Model, out: &mu
 }
 
 const USAGE: &str = "lines are `! cognate: IC JOINT/3, ANGLE=30D`, `! cognate: RIGID arm = PART/2, PART/3` \
-    and `! cognate: JOINT/4 hinge = REVOLUTE, base, arm, AT=0,0,0, AXIS=0,0,1`, with JOINT, MARKER, SPRINGDAMPER or CURVE";
+    and `! cognate: JOINT/4 hinge = REVOLUTE, base, arm, AT=0,0,0, AXIS=0,0,1`, with JOINT, MARKER, SPRINGDAMPER or CURVE; \
+    `! cognate: INCLUDE leg.adm` has the statements of another dataset";
 
 fn bad(message: impl Into<String>) -> Diagnostic {
     Diagnostic::error("bad_extension", message)

@@ -476,6 +476,19 @@ fn what_a_routine_does_wrong_ends_the_run_with_its_name() {
     assert_eq!(code, 0, "{err}");
 }
 
+/// A script must not take a run that a routine has ended for one that is done.
+#[test]
+fn a_routine_that_ends_the_program_is_told_and_no_success() {
+    let test = "routines_ending";
+    let ends = "#include <stdlib.h>\nvoid sfosub_(void);\nvoid sfosub_(void) { exit(0); }\n";
+    let source = scratch(test, "ends.c", ends);
+    if let Some(library) = library(test, &source, "ends.so") {
+        let (code, err) = refused(test, "FUNCTION=USER(1)", &["--routines", path(&library)]);
+        assert_eq!(code, 6, "{err}");
+        assert!(err.contains("has ended the program"), "{err}");
+    }
+}
+
 #[test]
 fn libraries_that_cannot_be_loaded_are_told() {
     let test = "routines_refused";

@@ -9,10 +9,13 @@
 
 use super::forms::{Ask, Asker, Form, Moment};
 use super::structures::Head;
+use crate::{Exit, remark};
+use cognate::diagnostic::{Cause, Diagnostic};
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
 use std::ffi::{c_int, c_void};
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Once};
 
 /// SFOSUB and its like, and MOTSUB: id, time, par, npar, dflag or iord, iflag, results.
 type Flagged = unsafe extern "C" fn(
@@ -174,6 +177,47 @@ pub fn is_mixed(name: &str) -> bool {
     name != name.to_lowercase() && name != name.to_uppercase()
 }
 
+/// Calls of routines that have not returned.
+static WITHIN: AtomicUsize = AtomicUsize::new(0);
+
+/// A call of what a library has, while it lasts.
+struct Within;
+
+impl Within {
+    fn enter() -> Self {
+        static WATCHED: Once = Once::new();
+        // SAFETY: the handler reads one number and writes a line
+        WATCHED.call_once(|| unsafe {
+            atexit(ended);
+        });
+        WITHIN.fetch_add(1, Ordering::Relaxed);
+        Within
+    }
+}
+
+impl Drop for Within {
+    fn drop(&mut self) {
+        WITHIN.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+unsafe extern "C" {
+    fn atexit(handler: extern "C" fn()) -> c_int;
+    fn _exit(code: c_int) -> !;
+}
+
+/// Says, when the process ends, that a routine has ended it: a script must not take that for
+/// success.
+extern "C" fn ended() {
+    if WITHIN.load(Ordering::Relaxed) > 0 {
+        let what = "a routine of --routines has ended the program (exit); there are no results";
+        let d = Diagnostic::error(Cause::UserRoutine, what);
+        remark(d.to_string());
+        // SAFETY: nothing of this process is needed any more
+        unsafe { _exit(Exit::Stopped as c_int) }
+    }
+}
+
 /// A library that was loaded. It stays so while a routine of it is there.
 pub struct Loaded(Library);
 
@@ -186,7 +230,9 @@ impl Loaded {
         super::services::keep();
         // SAFETY: the user has named this library so that its code runs. All of its symbols are
         // bound now: what is missing is told here, and does not end the process in a call.
+        let within = Within::enter();
         let library = unsafe { Library::open(Some(path), RTLD_NOW | RTLD_LOCAL) };
+        drop(within);
         library.map(Self).map_err(|e| e.to_string())
     }
 
@@ -267,6 +313,7 @@ const UNKNOWN: f64 = 0.0;
 impl Routine {
     /// Calls it once, and fills its results.
     pub fn call(&self, of: &Asker, at: Moment<'_>, ask: &Ask<'_>, out: &mut [f64]) {
+        let _within = Within::enter();
         if let Ask::System(states, inputs) = ask {
             self.call_system(of, at, (states, inputs), out);
             return;
