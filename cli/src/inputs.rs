@@ -6,7 +6,7 @@ use super::{Exit, Failure, remark};
 use cognate::dataset::command::Command;
 use cognate::diagnostic::Diagnostic;
 use cognate::disk;
-use cognate::model::{ElementKind, Model};
+use cognate::model::{ElementId, ElementKind, Model};
 use cognate::results::InputTable;
 use cognate::setup::{Between, drive_inputs, undriven_inputs};
 use serde_json::Value;
@@ -80,26 +80,13 @@ impl InputArgs {
     /// # Errors
     /// As [`InputArgs::drive`].
     pub fn drive_job(&self, job: &mut Job) -> Result<(), Failure> {
-        let before = job.reading.model.variables.clone();
+        let before = job.reading.model.clone();
         let note = self.drive(&mut job.reading.model)?;
-        let is_driven = |id: &u32| {
-            let now = job.reading.model.variables.get(id).map(|v| &v.function);
-            now != before.get(id).map(|v| &v.function)
-        };
         let changed = job.steps.iter().filter_map(|step| match &step.command {
-            Command::Change(record) if record.row.kind() == Some(ElementKind::Variable) => {
-                record.id.filter(is_driven)
-            }
+            Command::Change(record) => Some(record.row.kind()?.id(record.id?)),
             _ => None,
         });
-        if let Some(id) = changed.into_iter().next() {
-            let id = ElementKind::Variable.id(id);
-            let what = format!("a command changes {id}, which the table of --input drives");
-            let d = Diagnostic::error("input_table", what);
-            return Err(d
-                .help("leave its column out of the table, or the command")
-                .into());
-        }
+        refuse_driven((&before, &job.reading.model), changed, "a command changes")?;
         let is_true = self.is_given() || !job.changes_the_model();
         job.remarks.extend(note.filter(|_| is_true));
         Ok(())
@@ -114,4 +101,27 @@ impl InputArgs {
         note.iter().for_each(|note| remark(&note.message));
         Ok(())
     }
+}
+
+/// Refuses to change a VARIABLE that a table drives: it would follow the one or the other.
+///
+/// # Errors
+/// The first that is changed.
+pub fn refuse_driven(
+    (before, driven): (&Model, &Model),
+    mut changed: impl Iterator<Item = ElementId>,
+    how: &str,
+) -> Result<(), Failure> {
+    let function = |model: &Model, id: ElementId| {
+        let variable = (id.kind == ElementKind::Variable).then(|| model.variables.get(&id.number));
+        variable.flatten().map(|v| v.function.clone())
+    };
+    let Some(id) = changed.find(|id| function(before, *id) != function(driven, *id)) else {
+        return Ok(());
+    };
+    let what = format!("{how} {id}, which the table of --input drives");
+    let d = Diagnostic::error("input_table", what);
+    Err(d
+        .help("leave out its column of the table, or the change")
+        .into())
 }

@@ -1,7 +1,7 @@
 //! `cognate sweep`: one model many times, and a table of what came of it.
 
 use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs, threads};
-use super::inputs::InputArgs;
+use super::inputs::{InputArgs, refuse_driven};
 use super::mistake::Mistake;
 use super::progress::Progress;
 use super::recorded;
@@ -13,9 +13,10 @@ use super::writing::WritingArgs;
 use super::{Exit, Failure, Outcome, interrupt, piped, remark, say, width};
 use cognate::analysis::session::Options;
 use cognate::analysis::sweep::design::{self, Values};
-use cognate::analysis::sweep::{Follow, Row, Sweep, Table};
+use cognate::analysis::sweep::{Follow, Parameter, Row, Sweep, Table};
 use cognate::diagnostic::{Diagnostic, Error, counted};
 use cognate::disk;
+use cognate::model::Model;
 use cognate::results::format::Style;
 use cognate::results::{self, Status, digits_of_six};
 use std::path::{Path, PathBuf};
@@ -103,10 +104,12 @@ impl Follow for Terminal<'_> {
 pub fn run(args: &Args) -> Outcome {
     interrupt::install_for_run();
     let (out, format) = table_path(args)?;
-    let (mut sweep, Job { base, reading, .. }) = open(args)?;
+    let (mut sweep, Job { base, reading, .. }, before) = open(args)?;
     let zero_user = args.unsolved.zero_user;
     let mistake = (args.routines).compute_in(&mut sweep, &reading, zero_user)?;
     let points = prepare(args, &mut sweep)?;
+    let changed = sweep.parameters().iter().filter_map(Parameter::changed);
+    refuse_driven((&before, &reading.model), changed, "a parameter changes")?;
     let out = out.unwrap_or_else(|| disk::path(format!("{base}_sweep.csv")));
     if let Some(file) = &format {
         args.writing.check([file])?;
@@ -178,8 +181,9 @@ fn table_path(args: &Args) -> Result<(Option<PathBuf>, Option<PathBuf>), Failure
     )))
 }
 
-/// Reads the model and its commands; returns the job of which the sweep has the commands as well.
-fn open(args: &Args) -> Result<(Sweep, Job), Failure> {
+/// Reads the model and its commands; returns the job of which the sweep has the commands as well,
+/// and the model before a table has driven it.
+fn open(args: &Args) -> Result<(Sweep, Job, Model), Failure> {
     let mut job = if run::has_commands(&args.model) {
         args.span.refuse_beside(&args.model)?;
         run::script(&args.model, None)?
@@ -191,6 +195,7 @@ fn open(args: &Args) -> Result<(Sweep, Job), Failure> {
             span: args.span,
         })?
     };
+    let before = job.reading.model.clone();
     args.inputs.drive_told(&mut job.reading.model, args.quiet)?;
     let model = job.reading.model.clone();
     if let Err(error) = model.checked() {
@@ -204,7 +209,7 @@ fn open(args: &Args) -> Result<(Sweep, Job), Failure> {
     sweep.options = args.limits.given_to(args.unsolved.given_to(options));
     let folder = args.model.parent().map(Path::to_path_buf);
     sweep.folders.extend(folder);
-    Ok((sweep, job))
+    Ok((sweep, job, before))
 }
 
 /// Gives a sweep its parameters and measures, and returns its points.

@@ -486,6 +486,28 @@ fn a_sweep_and_a_linear_system_have_the_inputs_of_the_table() {
     let rows = cognate::results::read(out.as_ref()).unwrap();
     assert_eq!(rows.column("last(PINVAL(1,1))").unwrap(), [2.0, 2.0]);
 
+    // a parameter that the table drives
+    let both = cognate(&[
+        "sweep",
+        &dataset,
+        "--end",
+        "0.5",
+        "--input",
+        &table,
+        "--measure",
+        "last(PINVAL(1,1))",
+        "--set",
+        "VARIABLE/7=1,2",
+        "--out",
+        &out,
+        "--overwrite",
+    ]);
+    assert!(
+        both.code == 3 && both.err.contains("a parameter changes VARIABLE/7"),
+        "{}",
+        both.err
+    );
+
     // the square of the second input has the slope of twice its value, over a mass of 2
     let b = |more: &[&str]| {
         let done = ok(&[&["linear", &dataset, "--static", "--json"][..], more].concat());

@@ -122,6 +122,12 @@ impl Parameter {
         &self.name
     }
 
+    /// Returns the element that it changes; `None`: a setting, or all of a kind.
+    pub fn changed(&self) -> Option<ElementId> {
+        let (kind, id) = self.element();
+        Some(kind?.id(id?))
+    }
+
     /// The kind and number of the element.
     pub(super) fn element(&self) -> (Option<ElementKind>, Option<u32>) {
         (self.row.kind(), self.id)
